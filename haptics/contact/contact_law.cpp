@@ -1,0 +1,82 @@
+#include "haptics/contact/contact_law.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptics {
+namespace {
+
+// Index of the level at or below `ratio` and the weight of the next one.
+struct Level {
+    int index;
+    double weight;
+};
+
+Level level_of(const IndenterTable& t, double ratio) noexcept {
+    int i = 0;
+    while (i + 2 < IndenterTable::kLevels && ratio >= t.radius_over_thickness[i + 1])
+        ++i;
+    const double low = t.radius_over_thickness[i];
+    const double high = t.radius_over_thickness[i + 1];
+    return {i, std::clamp((ratio - low) / (high - low), 0.0, 1.0)};
+}
+
+// Linear interpolation in x and between two levels; also the slope in x. Beyond the table the
+// value stays: D/x then grows like x, which keeps the depth monotone.
+struct Entry {
+    double value, slope;
+};
+
+Entry lookup(
+    const std::array<std::array<double, IndenterTable::kEntries>, IndenterTable::kLevels>& rows,
+    const Level& level, double x, double x_step) noexcept {
+    const double at = std::min(x / x_step, IndenterTable::kEntries - 1.0);
+    const int i = std::min(static_cast<int>(at), IndenterTable::kEntries - 2);
+    const double part = at - i;
+    const auto mix = [&](int k) {
+        return (1.0 - level.weight) * rows[level.index][k] +
+               level.weight * rows[level.index + 1][k];
+    };
+    const double low = mix(i);
+    const double high = mix(i + 1);
+    const bool beyond = x / x_step > IndenterTable::kEntries - 1.0;
+    return {low + part * (high - low), beyond ? 0.0 : (high - low) / x_step};
+}
+
+// The floor keeps the slope of depth over force at 1/Kc or more everywhere: the table's own
+// slope falls with force, so its value at the end of the table is the smallest.
+double floored_linear(const LocalLaw& law, const Level& level) noexcept {
+    const IndenterTable& t = *law.table;
+    const double x = (IndenterTable::kEntries - 1) * t.x_step;
+    const Entry g = lookup(t.depth_over_x_m, level, x, t.x_step);
+    const double end_slope = (g.value + x * g.slope) / (3.0 * t.force_scale_n * x * x);
+    return std::max(law.normal_mpn, law.floor_mpn - end_slope);
+}
+
+} // namespace
+
+LawPoint law_at(const LocalLaw& law, double x) noexcept {
+    if (!law.table) {
+        const double slope = std::max(law.normal_mpn, law.floor_mpn);
+        return {x, slope * x, 1.0, slope};
+    }
+    const IndenterTable& t = *law.table;
+    const Level level = level_of(t, law.radius_over_thickness);
+    const Entry g = lookup(t.depth_over_x_m, level, x, t.x_step);
+    const double linear = floored_linear(law, level);
+    const double force = t.force_scale_n * x * x * x;
+    const double dforce = 3.0 * t.force_scale_n * x * x;
+    return {force, x * g.value + linear * force, dforce, g.value + x * g.slope + linear * dforce};
+}
+
+double tangential_compliance(const LocalLaw& law, double x) noexcept {
+    if (!law.table)
+        return std::max(law.tangential_mpn, law.floor_mpn);
+    const IndenterTable& t = *law.table;
+    const Level level = level_of(t, law.radius_over_thickness);
+    // no contact yet: the smallest contact radius that the table can tell apart from none
+    const double radius = lookup(t.contact_radius_m, level, std::max(x, t.x_step), t.x_step).value;
+    return std::max(t.tangential_m2pn / radius + law.tangential_mpn, law.floor_mpn);
+}
+
+} // namespace haptics

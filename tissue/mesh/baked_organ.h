@@ -1,0 +1,32 @@
+// tissue/mesh/baked_organ.h
+// What assets/bake writes and a scene loads: one organ, ready to simulate. Bytes in, bytes out;
+// files are opened by sim/ and by bake.
+#pragma once
+
+#include "tissue/material/elastic.h"
+#include "tissue/mesh/contact_surface.h"
+
+#include <cstddef>
+#include <string>
+
+namespace tissue {
+
+struct BakedOrgan {
+    std::string name;
+    bool rigid = false;                 // scenery: a surface without tetrahedra
+    TetMesh mesh;                       // empty if rigid
+    std::vector<std::uint8_t> anchored; // per node, 1 = fixed in place
+    ContactSurface surface;             // rigid: rows and terms empty
+    Material material;                  // default; a scene may name another
+    double tip_radius_max_m = 3e-3;     // kernels were made for tips up to this
+    std::uint64_t recipe_hash = 0;      // of the recipe and the baking code's version
+};
+
+/// Little endian, versioned, with a checksum at the end; the same organ gives the same bytes.
+std::vector<std::byte> write_organ(const BakedOrgan& organ);
+
+/// Throws std::invalid_argument saying what is wrong and at which byte: truncated, wrong magic,
+/// newer version, checksum, index out of range, non-finite number. Safe on hostile bytes.
+BakedOrgan read_organ(std::span<const std::byte> bytes);
+
+} // namespace tissue

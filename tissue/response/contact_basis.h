@@ -1,0 +1,41 @@
+// tissue/response/contact_basis.h
+// The few modes with which tissue answers at 1 kHz: moment-matched to the loads the tools may
+// apply before the next FEM answer (own directions with two or three moments, and a star of
+// neighbouring contact points, because the contact slides before the answer is used).
+//   B1 = A^-1 [n t1 t2 at c | n at c +- delta t1, c +- delta t2],  B2 = A^-1 M B1(c), B3 = A^-1 M
+//   B2(n) V: M-orthonormal, Lambda = V^T K V diagonal
+#pragma once
+
+#include "tissue/response/contact_rows.h"
+
+namespace tissue {
+
+inline constexpr int kModesPerContact = 11;
+inline constexpr int kMaxContacts = 3;
+inline constexpr int kMaxBasis = kModesPerContact * kMaxContacts;
+
+struct BasisContact {
+    ContactPoint centre;
+    std::array<ContactPoint, 4> star; // c +- delta t1, c +- delta t2
+    glm::dvec3 normal, tangent1, tangent2;
+};
+
+/// Buffers sized once; contents mean nothing between calls except as output.
+struct ContactBasis {
+    int modes = 0;
+    std::vector<double> shape;                // unknowns x modes, one mode after the other
+    std::array<double, kMaxBasis> lambda{};   // 1/s^2, ascending
+    std::array<double, kMaxBasis> residual{}; // V^T (f_int - f_ext)
+    std::array<double, kMaxBasis> rate{};     // V^T M v
+    std::vector<double> work;
+};
+ContactBasis make_contact_basis(const CorotatedModel& model);
+
+/// Fills `basis` for up to three contacts on one body. `system` must be made at `state`.
+/// Directions that are already in the basis (relative size below 1e-6) are dropped. No allocation
+/// outside CHOLMOD.
+void compute_contact_basis(const CorotatedModel& model, const ContactSurface& surface,
+                           const CorotatedState& state, CorotatedSystem& system,
+                           std::span<const BasisContact> contacts, ContactBasis& basis) noexcept;
+
+} // namespace tissue

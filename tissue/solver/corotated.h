@@ -1,0 +1,90 @@
+// tissue/solver/corotated.h
+// Corotated linear tetrahedra under implicit Euler, one Newton step per step (Mueller & Gross
+// 2004), with the exact tangent (Chao et al. 2010; Barbic 2012).
+//   A du = M v/dt - f_int(u) + f_ext - H^T F,  A = M/dt^2 + (alpha M + beta K)/dt + K,  v' = du/dt
+// K is the tangent at the beginning of the step, in the elastic and in the damping term alike.
+// If A is not positive definite the warped stiffness R Ke R^T is used for that step, and said.
+//
+//   CorotatedModel   what never changes: mesh, masses, pattern
+//   CorotatedState   x and v of all nodes: all that a snapshot needs
+//   CorotatedSystem  A, its factor and f_int, made at a state; the next step and the local model
+//                    both use it
+// The pieces of a step are separate so that sim/ can put the contact solve between them.
+#pragma once
+
+#include "tissue/material/elastic.h"
+#include "tissue/mesh/tet_mesh.h"
+#include "tissue/solver/sparse_factor.h"
+
+#include <glm/mat3x3.hpp>
+#include <limits>
+
+namespace tissue {
+
+struct CorotatedModel {
+    TetMesh mesh;
+    Material material;
+    double lambda_pa = 0.0, mu_pa = 0.0;
+    std::vector<std::array<glm::dvec3, 4>> gradient_1pm; // of the shape functions, rest frame
+    std::vector<double> volume_m3;
+    std::vector<double> mass_kg;   // per node, lumped
+    std::vector<std::int32_t> dof; // first of 3 unknowns of a node; -1: anchored
+    int unknowns = 0;
+    glm::dvec3 gravity_mps2{0.0}; // organs rest under gravity: 0; beams: not
+    SparsePattern pattern;
+    std::vector<std::array<std::int32_t, 10>> block; // where each tet's blocks go, see .cpp
+};
+
+struct CorotatedState {
+    std::vector<glm::dvec3> position_m;
+    std::vector<glm::dvec3> velocity_mps;
+};
+
+struct CorotatedSystem {
+    double dt_s = 0.0;              // infinity: statics, A = K
+    bool exact_tangent = true;      // false: fell back to the warped stiffness
+    int inverted = 0;               // tets with det F <= 0
+    std::vector<double> internal_n; // f_int - f_ext on the unknowns
+    std::vector<double> stiffness;  // K on the pattern
+    std::vector<double> matrix;     // A on the pattern
+    SparseFactor factor;
+};
+
+struct StepReport {
+    double relative_residual = 0.0; // |A du - b| / |b|
+    bool exact_tangent = true;
+    int inverted = 0;
+};
+
+/// Throws std::invalid_argument naming the tet or the value.
+CorotatedModel make_corotated(const TetMesh& mesh, const Material& material,
+                              std::span<const std::uint8_t> anchored,
+                              const glm::dvec3& gravity_mps2 = glm::dvec3{0.0});
+CorotatedState rest_state(const CorotatedModel& model);
+CorotatedSystem make_system(const CorotatedModel& model);
+
+/// f_int, K, A and its factor at `state`. No allocation outside CHOLMOD.
+void linearize(const CorotatedModel& model, const CorotatedState& state, double dt_s,
+               CorotatedSystem& system) noexcept;
+
+/// du without contact: A du = M v/dt - f_int + f_ext. `du` has one entry per unknown.
+StepReport free_motion(const CorotatedModel& model, const CorotatedState& state,
+                       CorotatedSystem& system, std::span<double> du) noexcept;
+
+/// u += du, v = du/dt.
+void advance(const CorotatedModel& model, std::span<const double> du, double dt_s,
+             CorotatedState& state) noexcept;
+
+/// Static equilibrium by Newton with line search from `state`; nodal loads on the unknowns.
+struct StaticReport {
+    int iterations = 0;
+    double relative_residual = 0.0;
+    bool converged = false;
+};
+StaticReport solve_static(const CorotatedModel& model, std::span<const double> load_n,
+                          double tolerance, int max_iterations, CorotatedState& state);
+
+/// Elastic energy, J, for tests and the energy ledger.
+double elastic_energy_j(const CorotatedModel& model, const CorotatedState& state) noexcept;
+
+} // namespace tissue

@@ -1,0 +1,45 @@
+// tissue/solver/sparse_factor.h
+// Symmetric sparse systems by CHOLMOD's supernodal Cholesky on one BLAS thread. Analysed once,
+// refactored as values change. The only file that includes CHOLMOD is the .cpp beside this one.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace tissue {
+
+/// Lower triangle, compressed columns, rows ascending, diagonal first in each column.
+struct SparsePattern {
+    int size = 0;
+    std::vector<int> column_start; // size + 1
+    std::vector<int> row;
+};
+
+class SparseFactor {
+  public:
+    /// Orders (AMD) and analyses. Throws std::runtime_error with CHOLMOD's word for it.
+    explicit SparseFactor(const SparsePattern& pattern);
+    ~SparseFactor();
+    SparseFactor(SparseFactor&&) noexcept;
+    SparseFactor& operator=(SparseFactor&&) noexcept;
+
+    /// False if the matrix is not positive definite; the factor is then unusable.
+    bool factor(std::span<const double> values) noexcept;
+
+    /// Solves A X = B in place, `columns` right-hand sides stored one after the other.
+    void solve(std::span<double> b, int columns) noexcept;
+
+    std::int64_t factor_entries() const noexcept; // nonzeros of L
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// y = A x for the full symmetric matrix. Sizes must fit.
+void multiply(const SparsePattern& pattern, std::span<const double> values,
+              std::span<const double> x, std::span<double> y) noexcept;
+
+} // namespace tissue
