@@ -1,0 +1,166 @@
+// tests/tissue/sparse_factor_test.cpp
+#include "tissue/solver/sparse_factor.h"
+
+#include <cmath>
+#include <doctest/doctest.h>
+#include <random>
+
+namespace {
+
+struct Matrix {
+    tissue::SparsePattern pattern;
+    std::vector<double> values;
+};
+
+// Random symmetric, strictly diagonally dominant, hence positive definite (Gershgorin).
+Matrix random_dominant(int size, int per_column, unsigned seed) {
+    std::mt19937 random(seed);
+    std::vector<std::vector<double>> dense(size, std::vector<double>(size, 0.0));
+    for (int c = 0; c < size; ++c) {
+        for (int k = 0; k < per_column && c + 1 < size; ++k) {
+            const int r = c + 1 + static_cast<int>(random() % static_cast<unsigned>(size - c - 1));
+            dense[r][c] = dense[c][r] = static_cast<double>(random() % 2001) / 1000.0 - 1.0;
+        }
+    }
+    Matrix m;
+    m.pattern.size = size;
+    m.pattern.column_start = {0};
+    for (int c = 0; c < size; ++c) {
+        double row_sum = 0.5;
+        for (int r = 0; r < size; ++r)
+            row_sum += std::abs(dense[r][c]);
+        m.pattern.row.push_back(c);
+        m.values.push_back(row_sum);
+        for (int r = c + 1; r < size; ++r) {
+            if (dense[r][c] == 0.0)
+                continue;
+            m.pattern.row.push_back(r);
+            m.values.push_back(dense[r][c]);
+        }
+        m.pattern.column_start.push_back(static_cast<int>(m.pattern.row.size()));
+    }
+    return m;
+}
+
+// -u'' on n points: 2 on the diagonal, -1 beside it.
+Matrix chain(int n) {
+    Matrix m;
+    m.pattern.size = n;
+    m.pattern.column_start = {0};
+    for (int c = 0; c < n; ++c) {
+        m.pattern.row.push_back(c);
+        m.values.push_back(2.0);
+        if (c + 1 < n) {
+            m.pattern.row.push_back(c + 1);
+            m.values.push_back(-1.0);
+        }
+        m.pattern.column_start.push_back(static_cast<int>(m.pattern.row.size()));
+    }
+    return m;
+}
+
+std::vector<double> random_vector(std::size_t size, unsigned seed) {
+    std::mt19937 random(seed);
+    std::vector<double> v(size);
+    for (double& x : v)
+        x = static_cast<double>(random() % 2001) / 1000.0 - 1.0;
+    return v;
+}
+
+} // namespace
+
+TEST_CASE("a chain under unit load bends to the parabola i (n + 1 - i) / 2") {
+    constexpr int n = 200;
+    const Matrix m = chain(n);
+    tissue::SparseFactor factor(m.pattern);
+    REQUIRE(factor.factor(m.values));
+    std::vector<double> x(n, 1.0);
+    factor.solve(x, 1);
+    for (int i = 1; i <= n; ++i) {
+        CHECK(x[i - 1] == doctest::Approx(i * (n + 1 - i) / 2.0).epsilon(1e-11));
+    }
+}
+
+TEST_CASE("multiply agrees with the dense symmetric matrix") {
+    const Matrix m = random_dominant(40, 3, 1);
+    std::vector<std::vector<double>> dense(40, std::vector<double>(40, 0.0));
+    for (int c = 0; c < 40; ++c) {
+        for (int k = m.pattern.column_start[c]; k < m.pattern.column_start[c + 1]; ++k) {
+            dense[m.pattern.row[k]][c] = dense[c][m.pattern.row[k]] = m.values[k];
+        }
+    }
+    const std::vector<double> x = random_vector(40, 2);
+    std::vector<double> y(40, 99.0);
+    tissue::multiply(m.pattern, m.values, x, y);
+    for (int r = 0; r < 40; ++r) {
+        double expected = 0.0;
+        for (int c = 0; c < 40; ++c)
+            expected += dense[r][c] * x[c];
+        CHECK(y[r] == doctest::Approx(expected).epsilon(1e-13));
+    }
+}
+
+TEST_CASE("solutions leave a residual below 1e-10, for one and for many right-hand sides") {
+    const int n = 300;
+    const Matrix m = random_dominant(n, 4, 5);
+    tissue::SparseFactor factor(m.pattern);
+    REQUIRE(factor.factor(m.values));
+    for (const int columns : {1, 3, 11, 33}) {
+        const std::vector<double> b = random_vector(static_cast<std::size_t>(n * columns), 6);
+        std::vector<double> x = b, product(n);
+        factor.solve(x, columns);
+        double error = 0.0, size = 0.0;
+        for (int c = 0; c < columns; ++c) {
+            tissue::multiply(m.pattern, m.values, std::span(x).subspan(c * n, n), product);
+            for (int i = 0; i < n; ++i) {
+                error += std::pow(product[i] - b[c * n + i], 2);
+                size += std::pow(b[c * n + i], 2);
+            }
+        }
+        CHECK(std::sqrt(error / size) < 1e-10);
+    }
+}
+
+TEST_CASE("factoring again gives the same bits, also in another object") {
+    const Matrix m = random_dominant(250, 4, 9), other = random_dominant(250, 4, 10);
+    const std::vector<double> b = random_vector(250 * 7, 11);
+    tissue::SparseFactor a(m.pattern);
+    std::vector<double> first = b, second = b, third = b;
+    REQUIRE(a.factor(m.values));
+    a.solve(first, 7);
+
+    std::vector<double> scaled = m.values;
+    for (double& v : scaled)
+        v *= 3.0;
+    REQUIRE(a.factor(scaled));
+    REQUIRE(a.factor(m.values));
+    a.solve(second, 7);
+    CHECK(first == second);
+
+    tissue::SparseFactor fresh(m.pattern);
+    REQUIRE(fresh.factor(m.values));
+    fresh.solve(third, 7);
+    CHECK(first == third);
+}
+
+TEST_CASE("an indefinite matrix is reported, and the object still works afterwards") {
+    Matrix m = random_dominant(100, 3, 4);
+    tissue::SparseFactor factor(m.pattern);
+    std::vector<double> indefinite = m.values;
+    indefinite[m.pattern.column_start[60]] = -1.0;
+    CHECK_FALSE(factor.factor(indefinite));
+    indefinite[m.pattern.column_start[60]] = std::nan("");
+    CHECK_FALSE(factor.factor(indefinite));
+    CHECK(factor.factor(m.values));
+}
+
+TEST_CASE("a moved factor keeps its answer") {
+    const Matrix m = chain(50);
+    tissue::SparseFactor a(m.pattern);
+    REQUIRE(a.factor(m.values));
+    tissue::SparseFactor b = std::move(a);
+    std::vector<double> x(50, 1.0);
+    b.solve(x, 1);
+    CHECK(x[0] == doctest::Approx(25.0));
+    CHECK(b.factor(m.values));
+}
