@@ -13,6 +13,11 @@ using std::numbers::pi;
 
 constexpr double kYoung_pa = 6e3;
 
+// doctest's Approx adds 1 to both sides, which hides small numbers.
+double relative_error(double value, double truth) {
+    return std::abs(value - truth) / std::abs(truth);
+}
+
 struct LayerFact {
     double poisson, ratio, kappa;
 };
@@ -29,9 +34,8 @@ TEST_CASE("subgrid: the kernel acts on itself as the Weber-Schafheitlin integral
     // (2^4 Gamma(5/2)^2 Gamma(9/2)), times 64 from k^(s) = 8 J2(s)/s^2
     const double integral = std::tgamma(4.0) * std::tgamma(0.5) /
                             (16.0 * std::pow(std::tgamma(2.5), 2.0) * std::tgamma(4.5));
-    CHECK(tissue::kernel_self_integral() == doctest::Approx(64.0 * integral).epsilon(1e-6));
-    CHECK(tissue::kernel_self_integral() ==
-          doctest::Approx(2.0695).epsilon(1e-4)); // to the digits in use
+    CHECK(relative_error(tissue::kernel_self_integral(), 64.0 * integral) < 1e-6);
+    CHECK(relative_error(tissue::kernel_self_integral(), 2.0695) < 1e-4); // to the digits in use
 }
 
 TEST_CASE("subgrid: a flat punch stiffens on a bonded layer as Hayes' equation says") {
@@ -68,14 +72,14 @@ TEST_CASE("subgrid: the kernel's layer factor follows from the layer's response"
 
 TEST_CASE("subgrid: far from its backing a layer is a half-space") {
     for (const double nu : {0.0, 0.3, 0.49}) {
-        CHECK(tissue::punch_layer_factor(0.0, nu) == doctest::Approx(1.0).epsilon(1e-12));
+        CHECK(relative_error(tissue::punch_layer_factor(0.0, nu), 1.0) < 1e-12);
         CHECK(tissue::kernel_layer_factor(0.0, nu) == 1.0);
-        CHECK(tissue::punch_layer_factor(1e-5, nu) == doctest::Approx(1.0).epsilon(1e-4));
-        CHECK(tissue::kernel_layer_factor(1e-5, nu) == doctest::Approx(1.0).epsilon(1e-4));
+        CHECK(relative_error(tissue::punch_layer_factor(1e-5, nu), 1.0) < 1e-4);
+        CHECK(relative_error(tissue::kernel_layer_factor(1e-5, nu), 1.0) < 1e-4);
         // flat punch: P = 2 E a w / (1 - nu^2)
         const double a_m = 2.5e-3;
-        CHECK(tissue::punch_compliance_mpn(kYoung_pa, nu, a_m, 1e3) ==
-              doctest::Approx((1.0 - nu * nu) / (2.0 * kYoung_pa * a_m)).epsilon(1e-4));
+        CHECK(relative_error(tissue::punch_compliance_mpn(kYoung_pa, nu, a_m, 1e3),
+                             (1.0 - nu * nu) / (2.0 * kYoung_pa * a_m)) < 1e-4);
     }
 }
 
@@ -84,7 +88,7 @@ TEST_CASE("subgrid: a very thin compressible layer is a column") {
     const double nu = 0.2, ratio = 40.0;
     const double modulus_over_g = 2.0 * (1.0 - nu) / (1.0 - 2.0 * nu);
     const double kappa = modulus_over_g * pi * ratio * (1.0 - nu) / 4.0;
-    CHECK(1.0 / tissue::punch_layer_factor(ratio, nu) == doctest::Approx(kappa).epsilon(0.04));
+    CHECK(relative_error(1.0 / tissue::punch_layer_factor(ratio, nu), kappa) < 0.04);
 }
 
 TEST_CASE("subgrid: with r = 1.3175 a the sub-grid spring is never negative") {
@@ -103,9 +107,9 @@ TEST_CASE("subgrid: with r = 1.3175 a the sub-grid spring is never negative") {
 TEST_CASE("subgrid: a sphere on thick tissue follows Sneddon") {
     const double a_m = 2.5e-3, nu = 0.45;
     const auto law = tissue::make_sphere_law(a_m, kYoung_pa, nu, 10, 257);
-    CHECK(law.force_scale_n == doctest::Approx(kYoung_pa * a_m * a_m / (1.0 - nu * nu)));
-    CHECK(static_cast<double>(law.depth_over_x_m[0].size() - 1) * law.x_step ==
-          doctest::Approx(8.0));
+    CHECK(relative_error(law.force_scale_n, kYoung_pa * a_m * a_m / (1.0 - nu * nu)) < 1e-12);
+    CHECK(relative_error(static_cast<double>(law.depth_over_x_m[0].size() - 1) * law.x_step, 8.0) <
+          1e-12);
     for (const double part : {0.02, 0.1, 0.3, 0.6, 0.9, 0.99, 0.999999}) {
         const double c_m = part * a_m;
         const double log = std::log((a_m + c_m) / (a_m - c_m));
@@ -113,9 +117,8 @@ TEST_CASE("subgrid: a sphere on thick tissue follows Sneddon") {
             kYoung_pa / (1.0 - nu * nu) * (0.5 * (c_m * c_m + a_m * a_m) * log - a_m * c_m);
         const double x = std::cbrt(force_n / law.force_scale_n);
         const double depth_m = interpolate(law.depth_over_x_m[0], x / law.x_step) * x;
-        CHECK(depth_m == doctest::Approx(0.5 * c_m * log).epsilon(1e-3)); // 257 entries, linear
-        CHECK(interpolate(law.contact_radius_m[0], x / law.x_step) ==
-              doctest::Approx(c_m).epsilon(1e-3));
+        CHECK(relative_error(depth_m, 0.5 * c_m * log) < 1e-3); // 257 entries, linear
+        CHECK(relative_error(interpolate(law.contact_radius_m[0], x / law.x_step), c_m) < 1e-3);
     }
 }
 
@@ -123,12 +126,12 @@ TEST_CASE("subgrid: at small depth a sphere is Hertzian on any layer") {
     // P = 4/3 E/(1-nu^2) sqrt(R) d^1.5, valid while a_c << R and a_c << T
     const auto law = tissue::make_sphere_law(1.0, 1.0, 0.3, 4, 4001);
     for (std::size_t level = 0; level < 4; ++level) {
-        const double x = 5 * law.x_step;
-        const double depth = law.depth_over_x_m[level][5] * x;
+        const double x = 2 * law.x_step;
+        const double depth = law.depth_over_x_m[level][2] * x;
         const double force = x * x * x * law.force_scale_n;
         const double hertz = 4.0 / 3.0 / (1.0 - 0.09) * std::pow(depth, 1.5);
-        CHECK(force == doctest::Approx(hertz).epsilon(0.02));
-        CHECK(law.contact_radius_m[level][5] == doctest::Approx(std::sqrt(depth)).epsilon(0.02));
+        CHECK(relative_error(force, hertz) < 0.02);
+        CHECK(relative_error(law.contact_radius_m[level][2], std::sqrt(depth)) < 0.02);
     }
 }
 
@@ -162,10 +165,10 @@ TEST_CASE("subgrid: a sphere on a bonded layer sinks and stiffens as computed by
         const double depth = law.depth_over_x_m[1][i] * x;
         const double a = law.contact_radius_m[1][i];
         const double log = std::log((1.0 + a) / (1.0 - a));
-        CHECK(depth == doctest::Approx(chi * 0.5 * a * log).epsilon(0.01));
+        CHECK(relative_error(depth, chi * 0.5 * a * log) < 0.01);
         const double g = 0.5 / (1.0 + nu);
-        CHECK(x * x * x * law.force_scale_n ==
-              doctest::Approx(8.0 / 3.0 * g * a * depth * kappa / (1.0 - nu)).epsilon(0.02));
+        CHECK(relative_error(x * x * x * law.force_scale_n,
+                             8.0 / 3.0 * g * a * depth * kappa / (1.0 - nu)) < 0.02);
     }
 }
 
