@@ -1,0 +1,144 @@
+#include "sim/bridge/answer_to_local_model.h"
+
+#include "haptics/contact/surface_walk.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace sim {
+namespace {
+
+struct Tangents {
+    glm::dvec3 first, second;
+};
+
+// Any two directions across n, chosen from n alone.
+Tangents tangents_of(const glm::dvec3& n) noexcept {
+    const glm::dvec3 axis = std::abs(n.x) < 0.6 ? glm::dvec3{1, 0, 0} : glm::dvec3{0, 1, 0};
+    const glm::dvec3 first = glm::normalize(glm::cross(n, axis));
+    return {first, glm::cross(n, first)};
+}
+
+// The star: where the contact may have slid to when the answer is used. Its arm is a third of
+// the kernel's radius, half the nodal size; anything up to three quarters of that size serves.
+tissue::BasisContact basis_contact(const Body& body, const FemContact& contact) noexcept {
+    const Tangents t = tangents_of(contact.normal);
+    const tissue::Triangle& corner = body.organ->surface.triangles[contact.at.triangle];
+    const double arm_m = body.organ->surface.footprint_radius_m[corner[0]] / 3.0;
+    const std::array<glm::dvec3, 4> arms{arm_m * t.first, -arm_m * t.first, arm_m * t.second,
+                                         -arm_m * t.second};
+    tissue::BasisContact out{.centre = tissue_point(contact.at),
+                             .star = {},
+                             .normal = contact.normal,
+                             .tangent1 = t.first,
+                             .tangent2 = t.second};
+    for (int k = 0; k < 4; ++k) {
+        out.star[k] = tissue_point(haptics::walk(BodySurface{body}, contact.at, arms[k]).point);
+    }
+    return out;
+}
+
+// Modes of one body into the common list. Returns where they begin.
+int add_modes(Body& body, std::span<const tissue::BasisContact> contacts,
+              haptics::LocalModels& local) noexcept {
+    SoftBody& soft = *body.soft;
+    tissue::compute_contact_basis(soft.model, body.organ->surface, soft.state, soft.system,
+                                  contacts, soft.basis);
+    const int first = local.modes;
+    const int count = std::min(soft.basis.modes, haptics::kMaxModes - first);
+    for (int m = 0; m < count; ++m) {
+        local.lambda[first + m] = soft.basis.lambda[m];
+        local.damping[first + m] = body.material.damping_mass_1ps +
+                                   body.material.damping_stiffness_s * soft.basis.lambda[m];
+        local.residual[first + m] = soft.basis.residual[m];
+        local.rate[first + m] = soft.basis.rate[m];
+    }
+    local.modes = first + count;
+    return first;
+}
+
+void fill_patch(const Body& body, const tissue::Patch& patch, haptics::ToolPatch& out) noexcept {
+    const tissue::ContactSurface& skin = body.organ->surface;
+    out.vertices = static_cast<int>(patch.vertex.size());
+    out.triangles = static_cast<int>(patch.triangle.size());
+    for (int v = 0; v < out.vertices; ++v) {
+        const std::uint32_t s = patch.vertex[v];
+        out.vertex[v] = {.anchor_m = body.skin_m[s],
+                         .normal = body.skin_normal[s],
+                         .radius_over_thickness = body.radius_over_thickness[s],
+                         .normal_mpn = body.normal_mpn[s],
+                         .tangential_mpn = body.tangential_mpn[s]};
+    }
+    for (int t = 0; t < out.triangles; ++t) {
+        out.triangle[t] = {
+            .vertex = patch.corner[t], .neighbour = patch.neighbour[t], .id = patch.triangle[t]};
+    }
+    if (!body.soft)
+        return;
+    const SoftBody& soft = *body.soft;
+    const std::size_t n = static_cast<std::size_t>(soft.model.unknowns);
+    for (int v = 0; v < out.vertices; ++v) {
+        for (int m = 0; m < out.modes; ++m) {
+            const glm::dvec3 moved = tissue::vertex_value(
+                soft.model, skin, patch.vertex[v], std::span(soft.basis.shape).subspan(m * n, n));
+            for (int axis = 0; axis < 3; ++axis)
+                out.shape[v][axis][m] = moved[axis];
+        }
+    }
+}
+
+void fill_tool(TissueRig& rig, int tool, haptics::ToolPatch& out) noexcept {
+    const FemContact& contact = rig.contact[tool];
+    out.near = contact.body >= 0;
+    out.vertices = out.triangles = 0;
+    out.force_n = contact.force_n;
+    out.contact = {};
+    out.memory = {};
+    if (!out.near)
+        return;
+    const Body& body = rig.bodies[contact.body];
+    out.body = static_cast<std::uint8_t>(contact.body);
+    out.friction = body.material.friction;
+    out.table = body.table.get();
+    out.floor_mpn = rig.floor_mpn[tool];
+    const double span_s = (rig.config.latency_periods + 2.0) * rig.config.step_s;
+    tissue::Patch& patch = rig.patch[tool];
+    tissue::gather_patch(body.organ->surface, body.skin_m,
+                         static_cast<std::uint32_t>(contact.at.triangle),
+                         rig.config.patch_radius_m + contact.speed_mps * span_s, patch);
+    fill_patch(body, patch, out);
+    out.contact = {patch.triangle_local[contact.at.triangle], contact.at.weight};
+    out.memory = rig.memory[tool];
+}
+
+} // namespace
+
+void make_local_models(TissueRig& rig, haptics::LocalModels& local) noexcept {
+    local.modes = 0;
+    for (haptics::ToolPatch& tool : local.tool)
+        tool.first_mode = tool.modes = 0;
+    for (std::size_t b = 0; b < rig.bodies.size(); ++b) {
+        if (!rig.bodies[b].soft)
+            continue;
+        std::array<tissue::BasisContact, kTools> contacts;
+        std::size_t count = 0;
+        for (const FemContact& contact : rig.contact) {
+            if (contact.body != static_cast<int>(b))
+                continue;
+            contacts[count++] = basis_contact(rig.bodies[b], contact);
+        }
+        if (count == 0)
+            continue;
+        const int first = add_modes(rig.bodies[b], std::span(contacts).first(count), local);
+        for (int i = 0; i < kTools; ++i) {
+            if (rig.contact[i].body != static_cast<int>(b))
+                continue;
+            local.tool[i].first_mode = first;
+            local.tool[i].modes = local.modes - first;
+        }
+    }
+    for (int i = 0; i < kTools; ++i)
+        fill_tool(rig, i, local.tool[i]);
+}
+
+} // namespace sim

@@ -1,0 +1,151 @@
+#include "sim/bridge/body.h"
+
+#include "haptics/contact/surface_walk.h"
+#include "tissue/response/subgrid.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <limits>
+
+namespace sim {
+namespace {
+
+std::unique_ptr<haptics::IndenterTable> make_table(const tissue::Material& material,
+                                                   double tip_radius_m) {
+    using Table = haptics::IndenterTable;
+    const tissue::SphereLaw law = tissue::make_sphere_law(
+        tip_radius_m, material.young_pa, material.poisson, Table::kLevels, Table::kEntries);
+    auto table = std::make_unique<Table>();
+    table->force_scale_n = law.force_scale_n;
+    table->x_step = law.x_step;
+    for (int level = 0; level < Table::kLevels; ++level) {
+        table->radius_over_thickness[level] = law.radius_over_thickness[level];
+        std::copy_n(law.depth_over_x_m[level].begin(), Table::kEntries,
+                    table->depth_over_x_m[level].begin());
+        std::copy_n(law.contact_radius_m[level].begin(), Table::kEntries,
+                    table->contact_radius_m[level].begin());
+    }
+    // tangential punch compliance times its radius: ratio * (1 - nu^2) / (2 E)
+    table->tangential_m2pn =
+        tissue::tangential_ratio(material.poisson) *
+        tissue::punch_compliance_mpn(material.young_pa, material.poisson, tip_radius_m,
+                                     std::numeric_limits<double>::infinity()) *
+        tip_radius_m;
+    return table;
+}
+
+// Linear part of the sub-grid law: what linear tetrahedra owe, less the kernel's own compliance,
+// which the rows of the mesh already carry.
+void fill_law(Body& body, double tip_radius_m) {
+    const tissue::ContactSurface& skin = body.organ->surface;
+    const tissue::Material& m = body.material;
+    const double ratio_t = tissue::tangential_ratio(m.poisson);
+    for (std::size_t v = 0; v < skin.rest_m.size(); ++v) {
+        const double thickness = skin.thickness_m[v];
+        const double r = skin.footprint_radius_m[v];
+        const double infinite = std::numeric_limits<double>::infinity();
+        body.radius_over_thickness[v] = tip_radius_m / thickness;
+        body.normal_mpn[v] = skin.mesh_term_n_m[v] / m.young_pa -
+                             tissue::kernel_compliance_mpn(m.young_pa, m.poisson, r, thickness);
+        body.tangential_mpn[v] =
+            skin.mesh_term_t_m[v] / m.young_pa -
+            ratio_t * tissue::kernel_compliance_mpn(m.young_pa, m.poisson, r, infinite);
+    }
+}
+
+double mixed(const std::vector<double>& values, const tissue::Triangle& t,
+             const glm::dvec3& w) noexcept {
+    return w.x * values[t[0]] + w.y * values[t[1]] + w.z * values[t[2]];
+}
+
+glm::dvec3 mixed(const std::vector<glm::dvec3>& values, const tissue::Triangle& t,
+                 const glm::dvec3& w) noexcept {
+    return w.x * values[t[0]] + w.y * values[t[1]] + w.z * values[t[2]];
+}
+
+} // namespace
+
+Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Material& material,
+               double tip_radius_m, double dt_s) {
+    Body body;
+    body.organ = std::move(organ);
+    body.material = material;
+    const tissue::ContactSurface& skin = body.organ->surface;
+    const std::size_t vertices = skin.rest_m.size();
+    body.skin_m = skin.rest_m;
+    body.skin_normal.resize(vertices);
+    body.some_triangle.assign(vertices, 0);
+    for (std::size_t t = skin.triangles.size(); t-- > 0;) {
+        for (const std::uint32_t v : skin.triangles[t]) {
+            body.some_triangle[v] = static_cast<std::uint32_t>(t);
+        }
+    }
+    body.radius_over_thickness.assign(vertices, 0.0);
+    body.normal_mpn.assign(vertices, 0.0);
+    body.tangential_mpn.assign(vertices, 0.0);
+    if (body.organ->rigid) {
+        tissue::vertex_normals(skin.triangles, body.skin_m, body.skin_normal);
+        return body;
+    }
+    body.table = make_table(material, tip_radius_m);
+    fill_law(body, tip_radius_m);
+    tissue::CorotatedModel model =
+        tissue::make_corotated(body.organ->mesh, material, body.organ->anchored);
+    tissue::CorotatedState state = tissue::rest_state(model);
+    tissue::CorotatedSystem system = tissue::make_system(model);
+    tissue::linearize(model, state, dt_s, system);
+    tissue::ContactBasis basis = tissue::make_contact_basis(model);
+    const std::size_t n = static_cast<std::size_t>(model.unknowns);
+    body.soft.emplace(SoftBody{std::move(model), std::move(state), std::move(system),
+                               std::move(basis), std::vector<double>(n),
+                               std::vector<double>(n * 3 * haptics::kTools)});
+    tissue::place_surface(skin, body.organ->mesh.rest_m, body.soft->state.position_m, body.skin_m,
+                          body.skin_normal);
+    return body;
+}
+
+haptics::LocalLaw law_on(const Body& body, const haptics::SurfacePoint& at,
+                         double floor_mpn) noexcept {
+    const tissue::Triangle& t = body.organ->surface.triangles[at.triangle];
+    return {.table = body.table.get(),
+            .radius_over_thickness = mixed(body.radius_over_thickness, t, at.weight),
+            .normal_mpn = mixed(body.normal_mpn, t, at.weight),
+            .tangential_mpn = mixed(body.tangential_mpn, t, at.weight),
+            .floor_mpn = floor_mpn};
+}
+
+glm::dvec3 place_on(const Body& body, const haptics::SurfacePoint& at) noexcept {
+    return mixed(body.skin_m, body.organ->surface.triangles[at.triangle], at.weight);
+}
+
+glm::dvec3 normal_on(const Body& body, const haptics::SurfacePoint& at) noexcept {
+    return glm::normalize(
+        mixed(body.skin_normal, body.organ->surface.triangles[at.triangle], at.weight));
+}
+
+Foot nearest_on(const Body& body, const glm::dvec3& from_m) noexcept {
+    double best = std::numeric_limits<double>::max();
+    std::size_t nearest = 0;
+    for (std::size_t v = 0; v < body.skin_m.size(); ++v) {
+        const glm::dvec3 d = body.skin_m[v] - from_m;
+        const double square = glm::dot(d, d);
+        if (square < best) {
+            best = square;
+            nearest = v;
+        }
+    }
+    const std::uint32_t triangle = body.some_triangle[nearest];
+    const tissue::Triangle& corners = body.organ->surface.triangles[triangle];
+    Foot foot;
+    foot.at.triangle = static_cast<int>(triangle);
+    for (int k = 0; k < 3; ++k)
+        foot.at.weight[k] = corners[k] == nearest ? 1.0 : 0.0;
+    constexpr int kPasses = 3; // the triangle turns under the point at each edge
+    for (int pass = 0; pass < kPasses; ++pass) {
+        foot.at = haptics::walk(BodySurface{body}, foot.at, from_m - place_on(body, foot.at)).point;
+    }
+    foot.distance_m = glm::length(from_m - place_on(body, foot.at));
+    return foot;
+}
+
+} // namespace sim

@@ -1,0 +1,73 @@
+// sim/bridge/body.h
+// One organ of a scene while it runs: the tissue's model and state beside what the contact solver
+// wants to know about its skin. Built at setup, then touched by the tissue loop only.
+#pragma once
+
+#include "haptics/contact/contact_law.h"
+#include "haptics/contact/local_model.h"
+#include "tissue/mesh/baked_organ.h"
+#include "tissue/response/contact_basis.h"
+#include "tissue/response/patch.h"
+
+#include <memory>
+#include <optional>
+
+namespace sim {
+
+/// What deforms. Absent for a rigid body.
+struct SoftBody {
+    tissue::CorotatedModel model;
+    tissue::CorotatedState state;
+    tissue::CorotatedSystem system; // linearised at `state`
+    tissue::ContactBasis basis;
+    std::vector<double> motion_m; // du of the step being made
+    std::vector<double> answer_m; // A^-1 of the contact rows, 3 columns a tool
+    bool resting = true;          // nothing touches it and nothing moves: steps cost nothing
+};
+
+struct Body {
+    std::shared_ptr<const tissue::BakedOrgan> organ;
+    tissue::Material material;
+    std::unique_ptr<haptics::IndenterTable> table; // null: rigid
+    std::optional<SoftBody> soft;
+    std::vector<glm::dvec3> skin_m, skin_normal; // as deformed now
+    std::vector<std::uint32_t> some_triangle;    // one triangle at each skin vertex
+    // the sub-grid law at each skin vertex, for this tip radius and material
+    std::vector<double> radius_over_thickness, normal_mpn, tangential_mpn;
+};
+
+/// `dt_s`: the FEM step that the first system is factored for. Throws on bad data, with the reason.
+Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Material& material,
+               double tip_radius_m, double dt_s);
+
+/// The sub-grid law where `at` lies on the skin; `floor_mpn` is 1/Kc of the tool there.
+haptics::LocalLaw law_on(const Body& body, const haptics::SurfacePoint& at,
+                         double floor_mpn) noexcept;
+
+/// Deformed place and unit normal there.
+glm::dvec3 place_on(const Body& body, const haptics::SurfacePoint& at) noexcept;
+glm::dvec3 normal_on(const Body& body, const haptics::SurfacePoint& at) noexcept;
+
+/// The whole deformed skin as something haptics::walk can walk on.
+struct BodySurface {
+    const Body& body;
+    glm::dvec3 position(int triangle, int corner) const noexcept {
+        return body.skin_m[body.organ->surface.triangles[triangle][corner]];
+    }
+    int neighbour(int triangle, int corner) const noexcept {
+        return body.organ->surface.neighbours[triangle][corner];
+    }
+};
+
+/// Foot point of `from_m` on the skin, by the nearest vertex and a walk. `distance_m`: to it.
+struct Foot {
+    haptics::SurfacePoint at;
+    double distance_m = 0.0;
+};
+Foot nearest_on(const Body& body, const glm::dvec3& from_m) noexcept;
+
+inline tissue::ContactPoint tissue_point(const haptics::SurfacePoint& at) noexcept {
+    return {static_cast<std::uint32_t>(at.triangle), at.weight};
+}
+
+} // namespace sim

@@ -1,0 +1,190 @@
+#include "sim/bridge/contact_rows.h"
+
+#include "haptics/contact/surface_walk.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace sim {
+namespace {
+
+constexpr double kOpenGap_m = 1e-4; // rounding, with a wide margin
+
+// A free tool takes whatever skin is nearest; the body that it was over wins a tie.
+void find_nearest(TissueRig& rig, int tool, const haptics::ToolTip& tip, double reach_m) noexcept {
+    FemContact& contact = rig.contact[tool];
+    Foot best;
+    int body = -1;
+    for (std::size_t b = 0; b < rig.bodies.size(); ++b) {
+        const Foot foot = nearest_on(rig.bodies[b], tip.centre_m);
+        if (body < 0 || foot.distance_m < best.distance_m) {
+            best = foot;
+            body = static_cast<int>(b);
+        }
+    }
+    if (body < 0 || best.distance_m - tip.radius_m > reach_m)
+        body = -1;
+    if (body != contact.body)
+        contact.own_compliance = glm::dmat3{0.0};
+    contact.body = body;
+    contact.at = best.at;
+    rig.memory[tool] = {};
+}
+
+// A touching tool carries its point along: first as far as stiction lets it, then we solve.
+void follow(TissueRig& rig, int tool, const haptics::ToolTip& tip) noexcept {
+    FemContact& contact = rig.contact[tool];
+    const Body& body = rig.bodies[contact.body];
+    constexpr int kPasses = 2; // the normal turns under the point as it moves
+    for (int pass = 0; pass < kPasses; ++pass) {
+        const haptics::ContactRow row{.active = true,
+                                      .tip_m = tip.centre_m,
+                                      .surface_free_m = place_on(body, contact.at),
+                                      .normal = normal_on(body, contact.at),
+                                      .tip_radius_m = tip.radius_m,
+                                      .friction = body.material.friction,
+                                      .law = law_on(body, contact.at, rig.floor_mpn[tool])};
+        const glm::dvec3 slip =
+            haptics::predicted_slip(row, contact.own_compliance, rig.memory[tool]);
+        contact.at = haptics::walk(BodySurface{body}, contact.at, slip).point;
+    }
+}
+
+} // namespace
+
+void follow_contacts(TissueRig& rig, const ToolsNow& tools) noexcept {
+    const double span_s = (rig.config.latency_periods + 2.0) * rig.config.step_s;
+    for (int i = 0; i < kTools; ++i) {
+        FemContact& contact = rig.contact[i];
+        const haptics::ToolTip& tip = tools.tip[i];
+        const double moved_m = contact.seen ? glm::distance(tip.centre_m, contact.last_tip_m) : 0.0;
+        contact.speed_mps = moved_m / rig.config.step_s;
+        const double reach_m = rig.config.reach_m + contact.speed_mps * span_s;
+        contact.last_tip_m = tip.centre_m;
+        contact.seen = true;
+        if (contact.body >= 0 && rig.memory[i].touching) {
+            follow(rig, i, tip);
+        } else {
+            find_nearest(rig, i, tip, reach_m);
+        }
+        if (contact.body >= 0)
+            contact.normal = normal_on(rig.bodies[contact.body], contact.at);
+    }
+}
+
+void condense_rows(TissueRig& rig, haptics::ContactProblem& problem) noexcept {
+    for (auto& line : problem.compliance)
+        line.fill(glm::dmat3{0.0});
+    for (std::size_t b = 0; b < rig.bodies.size(); ++b) {
+        Body& body = rig.bodies[b];
+        if (!body.soft)
+            continue;
+        SoftBody& soft = *body.soft;
+        const std::size_t n = static_cast<std::size_t>(soft.model.unknowns);
+        std::array<int, kTools> column{};
+        int columns = 0;
+        for (int i = 0; i < kTools; ++i) {
+            column[i] = columns;
+            if (problem.row[i].active && rig.contact[i].body == static_cast<int>(b))
+                columns += 3;
+        }
+        if (columns == 0)
+            continue;
+        const std::span<double> block(soft.answer_m.data(), n * columns);
+        std::fill(block.begin(), block.end(), 0.0);
+        for (int i = 0; i < kTools; ++i) {
+            if (!problem.row[i].active || rig.contact[i].body != static_cast<int>(b))
+                continue;
+            for (int axis = 0; axis < 3; ++axis) {
+                glm::dvec3 direction{0.0};
+                direction[axis] = 1.0;
+                tissue::add_row(soft.model, body.organ->surface, tissue_point(rig.contact[i].at),
+                                direction, 1.0, block.subspan((column[i] + axis) * n, n));
+            }
+        }
+        soft.system.factor.solve(block, columns);
+        for (int i = 0; i < kTools; ++i) {
+            for (int j = 0; j < kTools; ++j) {
+                const bool both = problem.row[i].active && problem.row[j].active &&
+                                  rig.contact[i].body == static_cast<int>(b) &&
+                                  rig.contact[j].body == static_cast<int>(b);
+                if (!both)
+                    continue;
+                for (int axis = 0; axis < 3; ++axis) {
+                    problem.compliance[i][j][axis] = tissue::row_value(
+                        soft.model, body.organ->surface, tissue_point(rig.contact[i].at),
+                        block.subspan((column[j] + axis) * n, n));
+                }
+            }
+            if (problem.row[i].active && rig.contact[i].body == static_cast<int>(b)) {
+                rig.contact[i].own_compliance = problem.compliance[i][i];
+            }
+        }
+    }
+}
+
+void fill_rows(const TissueRig& rig, const ToolsNow& tools,
+               haptics::ContactProblem& problem) noexcept {
+    for (int i = 0; i < kTools; ++i) {
+        const FemContact& contact = rig.contact[i];
+        haptics::ContactRow& row = problem.row[i];
+        row = {};
+        if (contact.body < 0)
+            continue;
+        const Body& body = rig.bodies[contact.body];
+        const bool still = !body.soft || body.soft->resting;
+        const glm::dvec3 place = place_on(body, contact.at);
+        const double gap_m =
+            glm::dot(contact.normal, tools.tip[i].centre_m - place) - tools.tip[i].radius_m;
+        // a skin that does not move cannot come to the tool: rows that are open stay open
+        row.active = !still || gap_m < kOpenGap_m;
+        row.tip_m = tools.tip[i].centre_m;
+        row.tip_radius_m = tools.tip[i].radius_m;
+        row.normal = contact.normal;
+        row.friction = body.material.friction;
+        row.law = law_on(body, contact.at, rig.floor_mpn[i]);
+        row.surface_free_m = place;
+        if (!still) {
+            row.surface_free_m += tissue::row_value(body.soft->model, body.organ->surface,
+                                                    tissue_point(contact.at), body.soft->motion_m);
+        }
+    }
+}
+
+void apply_forces(TissueRig& rig, const haptics::ContactProblem& problem,
+                  const haptics::ContactSolution& solution) noexcept {
+    for (std::size_t b = 0; b < rig.bodies.size(); ++b) {
+        Body& body = rig.bodies[b];
+        if (!body.soft)
+            continue;
+        SoftBody& soft = *body.soft;
+        const std::size_t n = static_cast<std::size_t>(soft.model.unknowns);
+        std::size_t column = 0;
+        for (int i = 0; i < kTools; ++i) {
+            if (!problem.row[i].active || rig.contact[i].body != static_cast<int>(b))
+                continue;
+            const glm::dvec3 force = solution.force_n[i];
+            const double* x = soft.answer_m.data() + column * n;
+            column += 3;
+            if (force == glm::dvec3{0.0})
+                continue;
+            for (std::size_t k = 0; k < n; ++k) {
+                soft.motion_m[k] -= force.x * x[k] + force.y * x[n + k] + force.z * x[2 * n + k];
+            }
+        }
+    }
+}
+
+void slide_contacts(TissueRig& rig, const haptics::ContactSolution& solution) noexcept {
+    for (int i = 0; i < kTools; ++i) {
+        FemContact& contact = rig.contact[i];
+        contact.force_n = solution.force_n[i];
+        if (contact.body < 0)
+            continue;
+        const Body& body = rig.bodies[contact.body];
+        contact.at = haptics::walk(BodySurface{body}, contact.at, solution.slip_m[i]).point;
+        contact.normal = normal_on(body, contact.at);
+    }
+}
+
+} // namespace sim

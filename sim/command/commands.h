@@ -1,0 +1,21 @@
+// sim/command/commands.h
+// One function per verb: declares its options and what to do. A command throws on bad input (exit
+// 2) and sets `exit_code` to 1 for a rig fault or a failed expectation.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace sim {
+
+void add_train(CLI::App& app, int& exit_code);
+void add_run(CLI::App& app, int& exit_code);
+void add_replay(CLI::App& app, int& exit_code);
+void add_rescore(CLI::App& app, int& exit_code);
+void add_trainee(CLI::App& app, int& exit_code);
+void add_note(CLI::App& app, int& exit_code);
+void add_study(CLI::App& app, int& exit_code);
+void add_devices(CLI::App& app, int& exit_code);
+
+} // namespace sim

@@ -1,0 +1,119 @@
+// sim/command/run.cpp
+// trocar run: one scripted attempt, lockstep or real time, with expectations and JUnit.
+#include "sim/command/commands.h"
+#include "sim/command/report.h"
+#include "sim/io/files.h"
+#include "sim/io/guard.h"
+#include "sim/session/session.h"
+#include "tasks/logbook/junit.h"
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <fmt/format.h>
+#include <optional>
+#include <thread>
+
+namespace sim {
+namespace {
+
+struct RunArguments {
+    RunOptions options;
+    std::string coupling = "anchored", model = "corotated", log, junit;
+    bool realtime = false, json = false, no_noise = false, no_forces = false;
+    double seconds = 0.0;
+};
+
+// Expectations of a script against the metrics; prints the failures.
+std::vector<tasks::ExpectationResult> judge(const RunArguments& a, const Attempt::Outcome& out) {
+    std::vector<tasks::ExpectationResult> results;
+    if (!a.options.hands.ends_with(".toml"))
+        return results;
+    for (const tasks::Expectation& expected :
+         tasks::parse_script(read_text(a.options.hands), a.options.hands).expect) {
+        results.push_back(tasks::check(expected, out.metrics));
+    }
+    return results;
+}
+
+Attempt::Outcome perform(const RunArguments& a, Session& session) {
+    std::optional<tasks::Logbook> logbook;
+    std::int64_t id = 0;
+    if (!a.log.empty()) {
+        logbook.emplace(a.log);
+        tasks::AttemptRow row = attempt_row(session, a.realtime);
+        row.session = logbook->add_session(session_row("scripted"));
+        id = logbook->begin_attempt(row);
+    }
+    tasks::Logbook* log = logbook ? &*logbook : nullptr;
+    if (!a.realtime)
+        return run_lockstep(session, log, id, asked_to_stop);
+    return run_realtime(session, log, id, a.seconds, [](Exchange&) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(16));
+        return !asked_to_stop();
+    });
+}
+
+void run(const RunArguments& a, int& exit_code) {
+    install_signal_guard();
+    const std::unique_ptr<Session> session = make_session(a.options);
+    const auto start = std::chrono::steady_clock::now();
+    const Attempt::Outcome outcome = perform(a, *session);
+    const double wall_s =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double simulated_s = double(session->haptics.next_tick) * kTick_s;
+
+    const auto results = judge(a, outcome);
+    bool failed = false;
+    for (const auto& result : results) {
+        if (result.ok)
+            continue;
+        failed = true;
+        fmt::print(stderr, "expectation failed: {}: {}\n", result.name, result.message);
+    }
+    if (!a.junit.empty())
+        write_text(a.junit, tasks::junit_xml("trocar run", results));
+    if (a.json) {
+        nlohmann::ordered_json json = outcome_json(outcome);
+        json["simulated_s"] = simulated_s;
+        json["wall_s"] = wall_s;
+        fmt::print("{}\n", json.dump());
+    } else {
+        fmt::print("{}  {:.1f} s simulated in {:.1f} s\n", outcome_table(outcome), simulated_s,
+                   wall_s);
+    }
+    if (failed || !outcome.row.rig.faults.empty())
+        exit_code = 1;
+}
+
+} // namespace
+
+void add_run(CLI::App& app, int& exit_code) {
+    auto a = std::make_shared<RunArguments>();
+    CLI::App* c = app.add_subcommand("run", "One scripted attempt, without a window");
+    c->add_option("exercise", a->options.exercise, "Name or file of an exercise")->required();
+    c->add_option("--scene", a->options.scene, "Name or file of a scene");
+    c->add_option("--hands", a->options.hands,
+                  "expert, intermediate, novice, another named skill, or FILE.toml");
+    c->add_option("--coupling", a->coupling, "anchored or hold");
+    c->add_option("--model", a->model, "corotated (auto chooses it until there are more tiers)")
+        ->check(CLI::IsMember({"auto", "corotated"}));
+    c->add_option("--fem-hz", a->options.fem_hz, "FEM steps a second; divides 1000");
+    c->add_option("--seed", a->options.seed, "Of everything random in the hand");
+    c->add_option("--max-seconds", a->options.max_seconds, "End incomplete after this long");
+    c->add_option("--trainee", a->options.trainee, "Pseudonymous id, see trocar trainee");
+    c->add_option("--log", a->log, "Logbook to write the attempt to");
+    c->add_option("--junit", a->junit, "Write the script's expectations as JUnit XML");
+    c->add_flag("--realtime", a->realtime, "Threads and deadlines instead of lockstep");
+    c->add_option("--seconds", a->seconds, "With --realtime: stop after this long");
+    c->add_flag("--no-noise", a->no_noise, "The hand makes no errors");
+    c->add_flag("--no-forces", a->no_forces, "Forces off: positions only");
+    c->add_flag("--json", a->json, "One JSON object instead of a table");
+    c->callback([a, &exit_code] {
+        a->options.coupling = coupling_named(a->coupling);
+        a->options.noise = !a->no_noise;
+        a->options.forces_on = !a->no_forces;
+        run(*a, exit_code);
+    });
+}
+
+} // namespace sim

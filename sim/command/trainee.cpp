@@ -1,0 +1,92 @@
+// sim/command/trainee.cpp
+// trocar trainee add|list|delete and trocar note: the instructor's side of the logbook.
+#include "sim/command/commands.h"
+#include "sim/io/files.h"
+#include "tasks/logbook/logbook.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace sim {
+namespace {
+
+struct TraineeArguments {
+    std::string db, name;
+    bool with_attempts = false, json = false;
+};
+
+std::string station_db() {
+    return (user_data_dir() / "station.db").string();
+}
+
+void list(const TraineeArguments& a) {
+    tasks::Logbook logbook(a.db);
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (const auto& t : logbook.trainees()) {
+        if (a.json) {
+            all.push_back({{"id", t.id}, {"name", t.name}, {"attempts", t.attempts}});
+        } else {
+            fmt::print("{}  {:>4} attempts  {}\n", t.id, t.attempts, t.name);
+        }
+    }
+    if (a.json)
+        fmt::print("{}\n", nlohmann::ordered_json{{"trainees", all}}.dump());
+}
+
+void remove(const TraineeArguments& a) {
+    tasks::Logbook logbook(a.db);
+    if (!logbook.delete_trainee(a.name, a.with_attempts)) {
+        throw std::invalid_argument(
+            fmt::format("{}: no trainee with the name or id \"{}\"", a.db, a.name));
+    }
+    fmt::print("deleted {}{}\n", a.name,
+               a.with_attempts ? " and all attempts" : "; attempts stay under the pseudonym");
+}
+
+} // namespace
+
+void add_trainee(CLI::App& app, int&) {
+    auto a = std::make_shared<TraineeArguments>();
+    a->db = station_db();
+    CLI::App* c = app.add_subcommand("trainee", "Who trains at this station");
+    c->require_subcommand(1);
+    CLI::App* add = c->add_subcommand("add", "Add a trainee; prints the pseudonymous id");
+    add->add_option("name", a->name, "Name, kept in a file of its own")->required();
+    CLI::App* show = c->add_subcommand("list", "All trainees");
+    show->add_flag("--json", a->json, "One JSON object instead of a table");
+    CLI::App* gone = c->add_subcommand("delete", "Forget a trainee's name for ever");
+    gone->add_option("id", a->name, "Id or name")->required();
+    gone->add_flag("--with-attempts", a->with_attempts, "Delete the attempts too");
+    for (CLI::App* sub : {add, show, gone}) {
+        sub->add_option("--log", a->db, "Logbook")->capture_default_str();
+    }
+    add->callback([a] {
+        tasks::Logbook logbook(a->db);
+        fmt::print("{}\n", logbook.add_trainee(a->name));
+    });
+    show->callback([a] { list(*a); });
+    gone->callback([a] { remove(*a); });
+}
+
+void add_note(CLI::App& app, int&) {
+    struct NoteArguments {
+        std::string db, text;
+        std::int64_t attempt = 0, tick = 0;
+    };
+    auto a = std::make_shared<NoteArguments>();
+    CLI::App* c = app.add_subcommand("note", "Write an instructor's note to a moment");
+    c->add_option("db", a->db, "Logbook")->required()->check(CLI::ExistingFile);
+    c->add_option("attempt", a->attempt, "Number of the attempt")->required();
+    c->add_option("tick", a->tick, "Millisecond of the attempt")->required();
+    c->add_option("text", a->text, "The note")->required();
+    c->callback([a] {
+        tasks::Logbook logbook(a->db);
+        if (!logbook.attempt(a->attempt)) {
+            throw std::invalid_argument(fmt::format("{}: has no attempt {}", a->db, a->attempt));
+        }
+        fmt::print("note {}\n", logbook.add_note(a->attempt, a->tick, a->text));
+    });
+}
+
+} // namespace sim

@@ -1,0 +1,89 @@
+// sim/exchange.h
+// Everything that passes between threads. If it is not in this file, it is not shared.
+//
+//   tissue loop, 50-200 Hz -- answers ->  haptic loop, 1 kHz    newest wins, reader keeps two
+//   haptic loop, 1 kHz     -- tools --->  tissue loop           newest wins
+//   haptic loop, 1 kHz     -- tools_seen> render loop           newest wins
+//   tissue loop            -- surface ->  render loop, 60 Hz    newest wins
+//   haptic loop, 1 kHz     -- ticks --->  recorder              every value, in order
+//   tissue loop            -- steps --->  recorder              every value, in order
+//   recorder               -- progress->  hands, render         newest wins
+//   render loop            -- marks --->  recorder              every value, in order
+//   anyone                 -- flags --->  the loops             single words
+#pragma once
+
+#include "haptics/contact/local_model.h"
+#include "haptics/contact/pose_history.h"
+#include "haptics/device/trocar.h"
+#include "sim/loop/newest_buffer.h"
+#include "sim/loop/spsc_ring.h"
+#include "tasks/exercise/touch_points.h"
+#include "tasks/logbook/trace.h"
+
+#include <vector>
+
+namespace sim {
+
+inline constexpr int kTools = haptics::kTools;
+inline constexpr double kTick_s = 1e-3;
+static_assert(haptics::kTools == tasks::kTools);
+
+/// Where the targets are, in micrometres, after one FEM step.
+using TargetPlaces = std::array<std::array<std::int32_t, 3>, tasks::kMaxTargets>;
+
+/// One FEM answer: what the haptic loop steps at 1 kHz, and what the exercise sees of the tissue.
+struct TissueAnswer {
+    haptics::LocalModels local;
+    TargetPlaces target_um{};
+    int targets = 0;
+};
+
+/// The tools as they are in one millisecond.
+struct ToolsNow {
+    std::int64_t tick = -1;
+    std::array<haptics::ToolTip, kTools> tip{};
+    std::array<haptics::ShaftPose, kTools> shaft{};
+    std::array<glm::dvec3, kTools> handle_m{};
+    std::array<double, kTools> jaw{}, roll_rad{};
+    std::array<glm::dvec3, kTools> force_n{}; // on the tip, world
+    std::array<bool, kTools> touching{};
+    std::array<double, kTools> felt_share{}; // ramp and limits: 0 limp .. 1 full force
+    std::array<bool, kTools> faulted{};
+};
+
+/// The surfaces as they are drawn; vectors sized once at start.
+struct SurfaceNow {
+    std::int64_t step = -1;
+    std::vector<std::vector<glm::vec3>> position_m; // per body
+    std::vector<std::vector<glm::vec3>> normal;
+    TargetPlaces target_um{};
+    int targets = 0;
+};
+
+/// How far the exercise is, for hands and screen.
+struct ProgressNow {
+    std::int64_t tick = -1;
+    int next_target = 0;
+    double hold_share = 0.0;
+    bool complete = false;
+    int errors = 0;
+};
+
+struct Exchange {
+    NewestBuffer<TissueAnswer> answers;
+    NewestBuffer<ToolsNow> tools;
+    NewestBuffer<ToolsNow> tools_seen;
+    NewestBuffer<SurfaceNow> surface;
+    NewestBuffer<ProgressNow> progress;      // recorder -> hands
+    NewestBuffer<ProgressNow> progress_seen; // recorder -> render
+    SpscRing<tasks::TickTrace, 1 << 13> ticks;
+    SpscRing<tasks::StepTrace, 1 << 11> steps;
+    SpscRing<tasks::Event, 1 << 6> marks; // pause, resume, abandon: what people did
+    std::atomic<bool> stop{false};
+    std::atomic<bool> paused{false};         // the world stands still, every device limp
+    std::atomic<bool> zero_forces{false};    // Esc: every device limp from the next tick on
+    std::atomic<bool> surface_wanted{false}; // nobody draws: the tissue loop does not bother
+    std::atomic<std::uint64_t> dropped{0};   // ring overflows: any makes the attempt not valid
+};
+
+} // namespace sim

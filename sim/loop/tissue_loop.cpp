@@ -1,0 +1,217 @@
+#include "sim/loop/tissue_loop.h"
+
+#include "sim/bridge/answer_to_local_model.h"
+#include "sim/bridge/contact_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+namespace sim {
+namespace {
+
+// Below these a body is at rest: a micrometre a second moves nothing that a hand or eye can tell,
+// and dropping it makes rest exact, so that resting steps cost nothing and repeat to the bit.
+constexpr double kRestSpeed_mps = 1e-6;
+
+bool moves(const SoftBody& soft, double dt_s) noexcept {
+    return std::any_of(soft.motion_m.begin(), soft.motion_m.end(),
+                       [&](double d) { return std::abs(d) > kRestSpeed_mps * dt_s; });
+}
+
+void free_motions(TissueRig& rig, StepOutcome& outcome) noexcept {
+    for (Body& body : rig.bodies) {
+        if (!body.soft)
+            continue;
+        SoftBody& soft = *body.soft;
+        if (soft.resting) {
+            std::fill(soft.motion_m.begin(), soft.motion_m.end(), 0.0);
+            continue;
+        }
+        const tissue::StepReport report =
+            tissue::free_motion(soft.model, soft.state, soft.system, soft.motion_m);
+        outcome.linear_residual = std::max(outcome.linear_residual, report.relative_residual);
+        outcome.inverted += report.inverted;
+        outcome.warped |= !report.exact_tangent;
+    }
+}
+
+void wake_touched(TissueRig& rig, const haptics::ContactSolution& solution) noexcept {
+    for (int i = 0; i < kTools; ++i) {
+        if (rig.contact[i].body < 0 || solution.force_n[i] == glm::dvec3{0.0})
+            continue;
+        Body& body = rig.bodies[rig.contact[i].body];
+        if (body.soft)
+            body.soft->resting = false;
+    }
+}
+
+void advance_bodies(TissueRig& rig, const haptics::ContactSolution& solution) noexcept {
+    for (std::size_t b = 0; b < rig.bodies.size(); ++b) {
+        Body& body = rig.bodies[b];
+        if (!body.soft || body.soft->resting)
+            continue;
+        SoftBody& soft = *body.soft;
+        bool touched = false;
+        for (int i = 0; i < kTools; ++i) {
+            touched |= rig.contact[i].body == static_cast<int>(b) &&
+                       solution.force_n[i] != glm::dvec3{0.0};
+        }
+        if (!touched && !moves(soft, rig.config.step_s)) {
+            std::fill(soft.state.velocity_mps.begin(), soft.state.velocity_mps.end(),
+                      glm::dvec3{0.0});
+            soft.resting = true;
+            continue;
+        }
+        tissue::advance(soft.model, soft.motion_m, rig.config.step_s, soft.state);
+        tissue::linearize(soft.model, soft.state, rig.config.step_s, soft.system);
+        tissue::place_surface(body.organ->surface, body.organ->mesh.rest_m, soft.state.position_m,
+                              body.skin_m, body.skin_normal);
+    }
+}
+
+// Depth under a tip that the mesh cannot show, and how far around the tip it reaches.
+struct Dimple {
+    glm::dvec3 centre_m{0.0}, down{0.0};
+    double depth_m = 0.0, contact_radius_m = 1e-9, reach_m = 1.0;
+    int body = -1;
+};
+
+Dimple dimple_of(const TissueRig& rig, int tool) noexcept {
+    const FemContact& contact = rig.contact[tool];
+    Dimple out;
+    if (contact.body < 0 || !rig.memory[tool].touching)
+        return out;
+    const Body& body = rig.bodies[contact.body];
+    if (!body.soft)
+        return out;
+    const haptics::LocalLaw law = law_on(body, contact.at, rig.floor_mpn[tool]);
+    const tissue::Triangle& corner = body.organ->surface.triangles[contact.at.triangle];
+    out.body = contact.body;
+    out.centre_m = place_on(body, contact.at);
+    out.down = -contact.normal;
+    out.depth_m = std::max(0.0, haptics::law_at(law, rig.memory[tool].x).depth_m);
+    out.contact_radius_m = haptics::contact_radius(law, rig.memory[tool].x);
+    out.reach_m = body.organ->surface.footprint_radius_m[corner[0]];
+    return out;
+}
+
+// Skin around a flat punch sinks as (2/pi) asin(a_c/rho) (Sneddon 1965); beyond the kernel the
+// mesh shows all of it.
+double sunk_m(const Dimple& dimple, const glm::dvec3& place_m) noexcept {
+    const double rho = glm::distance(place_m, dimple.centre_m);
+    if (rho >= dimple.reach_m)
+        return 0.0;
+    const double share = rho / dimple.reach_m;
+    const double fade = (1.0 - share * share) * (1.0 - share * share);
+    const double profile = 2.0 / glm::pi<double>() *
+                           std::asin(std::min(1.0, dimple.contact_radius_m / std::max(rho, 1e-9)));
+    return dimple.depth_m * profile * fade;
+}
+
+} // namespace
+
+TissueRig make_tissue_rig(std::vector<Body> bodies, const TissueConfig& config) {
+    TissueRig rig;
+    rig.config = config;
+    rig.bodies = std::move(bodies);
+    // one scratch patch per tool, large enough for whichever body it meets
+    const auto largest =
+        std::max_element(rig.bodies.begin(), rig.bodies.end(), [](const Body& a, const Body& b) {
+            return a.organ->surface.triangles.size() < b.organ->surface.triangles.size();
+        });
+    if (largest != rig.bodies.end()) {
+        for (tissue::Patch& patch : rig.patch) {
+            patch = tissue::make_patch(largest->organ->surface, haptics::kMaxPatchVertices,
+                                       haptics::kMaxPatchTriangles);
+        }
+    }
+    return rig;
+}
+
+double coupling_floor_mpn(const haptics::ShaftPose& shaft, double device_npm) noexcept {
+    const glm::dmat3& J = shaft.jacobian;
+    const double lever = 0.5 * (J[0][0] + J[1][1] + J[2][2] - 1.0);
+    return std::max(1.0, lever * lever) / device_npm;
+}
+
+StepOutcome tissue_step(TissueRig& rig, const ToolsNow& tools, TissueAnswer& answer) noexcept {
+    StepOutcome outcome;
+    outcome.trace.step = rig.next_step++;
+    outcome.trace.sample_tick = tools.tick;
+    rig.last_sample_tick = tools.tick;
+
+    for (int i = 0; i < kTools; ++i) {
+        rig.floor_mpn[i] = coupling_floor_mpn(tools.shaft[i], rig.device_npm[i]);
+    }
+    follow_contacts(rig, tools);
+    free_motions(rig, outcome);
+    haptics::ContactProblem problem;
+    fill_rows(rig, tools, problem);
+    condense_rows(rig, problem);
+    const haptics::ContactSolution solution = haptics::solve_contact(problem, rig.memory);
+    outcome.contact_residual_m = solution.residual_m;
+    wake_touched(rig, solution);
+    apply_forces(rig, problem, solution);
+    advance_bodies(rig, solution);
+    slide_contacts(rig, solution);
+
+    answer.local.step = outcome.trace.step;
+    answer.local.sample_tick = tools.tick;
+    if (rig.config.basis)
+        make_local_models(rig, answer.local);
+    answer.targets = static_cast<int>(rig.targets.size());
+    place_targets(rig, answer.target_um);
+    outcome.trace.targets = answer.targets;
+    outcome.trace.target_um = answer.target_um;
+    outcome.trace.flags =
+        static_cast<std::uint8_t>((outcome.warped ? 1 : 0) | (outcome.inverted > 0 ? 2 : 0));
+    return outcome;
+}
+
+void place_targets(const TissueRig& rig, TargetPlaces& out) noexcept {
+    std::array<Dimple, kTools> dimples;
+    for (int i = 0; i < kTools; ++i)
+        dimples[i] = dimple_of(rig, i);
+    for (std::size_t t = 0; t < rig.targets.size() && t < out.size(); ++t) {
+        const EmbeddedTarget& target = rig.targets[t];
+        const glm::dvec3 place = place_on(rig.bodies[target.body], target.at);
+        glm::dvec3 sunk = place;
+        for (const Dimple& dimple : dimples) {
+            if (dimple.body == target.body)
+                sunk += sunk_m(dimple, place) * dimple.down;
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            out[t][axis] = static_cast<std::int32_t>(std::lround(sunk[axis] * 1e6));
+        }
+    }
+}
+
+void draw_surface(const TissueRig& rig, SurfaceNow& out) {
+    std::array<Dimple, kTools> dimples;
+    for (int i = 0; i < kTools; ++i)
+        dimples[i] = dimple_of(rig, i);
+    out.step = rig.next_step - 1;
+    out.position_m.resize(rig.bodies.size());
+    out.normal.resize(rig.bodies.size());
+    for (std::size_t b = 0; b < rig.bodies.size(); ++b) {
+        const Body& body = rig.bodies[b];
+        out.position_m[b].resize(body.skin_m.size());
+        out.normal[b].resize(body.skin_m.size());
+        for (std::size_t v = 0; v < body.skin_m.size(); ++v) {
+            glm::dvec3 place = body.skin_m[v];
+            for (const Dimple& dimple : dimples) {
+                if (dimple.body == static_cast<int>(b)) {
+                    place += sunk_m(dimple, body.skin_m[v]) * dimple.down;
+                }
+            }
+            out.position_m[b][v] = glm::vec3(place);
+            out.normal[b][v] = glm::vec3(body.skin_normal[v]);
+        }
+    }
+    out.targets = static_cast<int>(rig.targets.size());
+    place_targets(rig, out.target_um);
+}
+
+} // namespace sim

@@ -1,0 +1,53 @@
+// sim/session/lockstep.cpp
+// One thread, no clock in anything that counts: the integer tick is the time, and the FEM's
+// latency of one period is emulated. Everything headless runs like this.
+#include "sim/session/session.h"
+
+#include <chrono>
+
+namespace sim {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double microseconds(Clock::duration d) {
+    return std::chrono::duration<double, std::micro>(d).count();
+}
+
+} // namespace
+
+Attempt::Outcome run_lockstep(Session& session, tasks::Logbook* logbook, std::int64_t attempt_id,
+                              bool (*should_stop)()) {
+    tasks::AttemptRow row = attempt_row(session, false);
+    row.id = attempt_id;
+    Attempt attempt(session.scene.scene, session.exercise, session.rest_targets, row, logbook);
+    Exchange& exchange = *session.exchange;
+    const std::int64_t period = session.haptics.coupling_config.period_ticks;
+
+    ToolsNow sampled; // poses that the running FEM step reads
+    tasks::TickTrace trace;
+    tasks::HandSight sight = sight_of(session, trace, 0, false);
+    std::int64_t tick = 0;
+    for (; tick < session.max_ticks && !attempt.progress().complete; ++tick) {
+        if (tick > 0 && tick % period == 0) {
+            attempt.add(run_step(session, sampled, exchange.answers.back()));
+            exchange.answers.publish();
+        }
+        crew_tick(session.crew, session.haptics, sight);
+        const auto start = Clock::now();
+        haptic_tick(session.haptics, exchange, trace);
+        session.tick_time.add(microseconds(Clock::now() - start));
+        attempt.add(trace);
+        if (tick % period == 0)
+            sampled = exchange.tools.latest();
+        sight = sight_of(session, trace, attempt.progress().next, attempt.progress().complete);
+        if (tick % 1000 == 0 && should_stop && should_stop()) {
+            attempt.add_event({.tick = tick, .kind = tasks::EventKind::abandoned});
+            break;
+        }
+    }
+    fill_report(session, tick, false);
+    return attempt.finish(session.report);
+}
+
+} // namespace sim

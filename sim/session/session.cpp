@@ -1,0 +1,204 @@
+#include "sim/session/session.h"
+
+#include "sim/io/files.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <openssl/opensslv.h>
+#include <stdexcept>
+#include <sys/utsname.h>
+
+namespace sim {
+namespace {
+
+int period_of(int fem_hz) {
+    const int period = fem_hz > 0 ? static_cast<int>(std::lround(1000.0 / fem_hz)) : 0;
+    if (period < 2 || period > 100 || 1000 % period != 0) {
+        throw std::invalid_argument(fmt::format(
+            "--fem-hz {}: must divide 1000 ticks a second: 10, 20, 25, 40, 50, 100, 125, 200, 250, "
+            "500",
+            fem_hz));
+    }
+    return period;
+}
+
+std::vector<glm::dvec3> places(const tasks::TouchPoints& exercise) {
+    std::vector<glm::dvec3> out;
+    for (const tasks::TouchTarget& target : exercise.target)
+        out.push_back(target.at_m);
+    return out;
+}
+
+std::vector<tasks::Target> rest_targets(const TissueRig& rig) {
+    std::vector<tasks::Target> out;
+    for (const EmbeddedTarget& target : rig.targets) {
+        const Body& body = rig.bodies[target.body];
+        out.push_back({place_on(body, target.at), normal_on(body, target.at)});
+    }
+    return out;
+}
+
+// Everything that follows from options, scene and exercise.
+std::unique_ptr<Session> build(const RunOptions& options, LoadedScene scene,
+                               const std::string& exercise_text, const std::string& exercise_file) {
+    auto session = std::make_unique<Session>();
+    session->options = options;
+    const int period = period_of(options.fem_hz);
+    session->exercise_text = exercise_text;
+    session->exercise = tasks::parse_touch_points(exercise_text, exercise_file);
+    session->scene = std::move(scene);
+    TissueConfig config;
+    config.step_s = period * kTick_s;
+    session->tissue = make_tissue(session->scene, places(session->exercise), config);
+    session->rest_targets = rest_targets(session->tissue);
+    session->haptics = make_haptics(session->scene.scene);
+    session->haptics.coupling = options.coupling;
+    session->haptics.coupling_config.period_ticks = period;
+    session->haptics.forces_on = options.forces_on;
+    const double limit =
+        options.max_seconds > 0.0 ? options.max_seconds : session->exercise.time_limit_s;
+    session->max_ticks = static_cast<std::int64_t>(limit / kTick_s);
+    place_targets(session->tissue, session->haptics.target_um);
+    session->haptics.targets = static_cast<int>(session->tissue.targets.size());
+    return session;
+}
+
+void give_hands(Session& session) {
+    std::array<glm::dvec3, kTools> start;
+    for (int i = 0; i < kTools; ++i)
+        start[i] = session.scene.scene.tool[i].start_tip_m;
+    const std::string& hands = session.options.hands;
+    if (hands.ends_with(".toml")) {
+        session.crew.hand.emplace<tasks::ScriptHand>(tasks::parse_script(read_text(hands), hands),
+                                                     session.exercise, start);
+        return;
+    }
+    tasks::HandSkill skill = tasks::skill_named(hands);
+    if (!session.options.noise)
+        skill = tasks::without_errors(skill);
+    session.crew.hand.emplace<tasks::Hand>(skill, session.exercise, session.options.seed, start);
+}
+
+} // namespace
+
+std::unique_ptr<Session> make_session(const RunOptions& options, bool with_hands) {
+    const auto path = find_asset("exercises", options.exercise);
+    auto session = build(options, load_scene(options.scene), read_text(path), path.string());
+    if (with_hands) {
+        session->crew = make_crew(session->scene.scene, session->haptics);
+        give_hands(*session);
+    }
+    return session;
+}
+
+std::unique_ptr<Session> session_of(const tasks::AttemptRow& recorded) {
+    RunOptions options;
+    options.coupling = coupling_named(recorded.coupling);
+    options.fem_hz = recorded.fem_hz;
+    options.seed = recorded.seed;
+    options.hands = recorded.hands;
+    options.trainee = recorded.trainee;
+    options.forces_on = recorded.forces_on;
+    LoadedScene scene = load_organs(parse_scene(recorded.scene_text, "scene in the logbook"));
+    if (scene.hash != recorded.scene_hash) {
+        throw std::runtime_error("the scene's organs are not the ones that this attempt was made "
+                                 "with: bake them from the same recipes, or use rescore");
+    }
+    return build(options, std::move(scene), recorded.exercise_text, "exercise in the logbook");
+}
+Coupling coupling_named(const std::string& name) {
+    if (name == "anchored")
+        return Coupling::anchored;
+    if (name == "hold")
+        return Coupling::hold;
+    throw std::invalid_argument(fmt::format("coupling \"{}\": must be anchored or hold", name));
+}
+
+tasks::SessionRow session_row(const std::string& input_class) {
+    utsname name{};
+    uname(&name);
+    return {.build = TROCAR_VERSION,
+            .machine = fmt::format("{} {}", name.sysname, name.machine),
+            .blas = tissue::blas_name(),
+            .dispatch = "scalar",
+            .input_class = input_class,
+            .device_serials_hash = {}};
+}
+
+tasks::AttemptRow attempt_row(const Session& session, bool realtime) {
+    tasks::AttemptRow row;
+    row.trainee = session.options.trainee;
+    row.exercise = session.exercise.id;
+    row.exercise_text = session.exercise_text;
+    row.scene_text = session.scene.scene.text;
+    row.scene_hash = session.scene.hash;
+    row.model = "corotated";
+    row.coupling = session.options.coupling == Coupling::hold ? "hold" : "anchored";
+    row.hands = session.options.hands;
+    row.seed = session.options.seed;
+    row.fem_hz = session.options.fem_hz;
+    row.realtime = realtime;
+    row.forces_on = session.options.forces_on;
+    for (const Instrument& instrument : session.haptics.instrument) {
+        const auto& c = instrument.sample.counts;
+        row.start_counts.push_back({c[0], c[1], c[2]});
+    }
+    return row;
+}
+
+tasks::HandSight sight_of(const Session& session, const tasks::TickTrace& trace, int next_target,
+                          bool done) {
+    return {.tick = trace.tick,
+            .now = observe_trace(session.haptics, session.scene.scene.view, trace,
+                                 session.haptics.target_um, session.rest_targets),
+            .next_target = next_target,
+            .done = done};
+}
+
+tasks::StepTrace run_step(Session& session, const ToolsNow& tools, TissueAnswer& answer) {
+    const auto start = std::chrono::steady_clock::now();
+    StepOutcome outcome = tissue_step(session.tissue, tools, answer);
+    const double us =
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+    session.step_time.add(us);
+    session.worst_linear_residual =
+        std::max(session.worst_linear_residual, outcome.linear_residual);
+    session.warped_steps += outcome.warped;
+    session.inverted_steps += outcome.inverted > 0;
+    outcome.trace.duration_us = static_cast<std::int32_t>(us);
+    return outcome.trace;
+}
+
+void fill_report(Session& session, std::int64_t ticks, bool realtime) {
+    tasks::RigReport& r = session.report;
+    r.tick_us_p50 = session.tick_time.at_share(0.5);
+    r.tick_us_p99 = session.tick_time.at_share(0.99);
+    r.tick_us_p9999 = session.tick_time.at_share(0.9999);
+    r.tick_us_max = session.tick_time.max_us();
+    r.fem_ms_p50 = 1e-3 * session.step_time.at_share(0.5);
+    r.fem_ms_p99 = 1e-3 * session.step_time.at_share(0.99);
+    r.fem_ms_max = 1e-3 * session.step_time.max_us();
+    r.dropped = static_cast<std::int64_t>(session.exchange->dropped.load());
+    r.energy_min_j = 0.0;
+    for (const Instrument& instrument : session.haptics.instrument) {
+        r.energy_min_j += instrument.energy.min_j;
+        if (instrument.limit_state.not_finite > 0)
+            r.faults.push_back("force was not a number");
+    }
+    constexpr double kGoodResidual = 1e-3;
+    if (session.worst_linear_residual > kGoodResidual) {
+        r.faults.push_back(
+            fmt::format("linear residual {:.1e} > 1e-3", session.worst_linear_residual));
+    }
+    if (session.haptics.not_finite > 0)
+        r.faults.push_back("contact force was not a number");
+    if (r.dropped > 0)
+        r.faults.push_back(fmt::format("{} records dropped", r.dropped));
+    // one tick in a thousand late: a hand notices, and the score is not the trainee's alone
+    if (realtime && r.missed * 1000 > ticks) {
+        r.faults.push_back(fmt::format("{} of {} ticks missed their deadline", r.missed, ticks));
+    }
+}
+
+} // namespace sim
