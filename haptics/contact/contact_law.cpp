@@ -22,7 +22,7 @@ Level level_of(const IndenterTable& t, double ratio) noexcept {
 }
 
 // Linear interpolation in x and between two levels; also the slope in x. Beyond the table the
-// value stays: D/x then grows like x, which keeps the depth monotone.
+// last value stays.
 struct Entry {
     double value, slope;
 };
@@ -39,18 +39,19 @@ Entry lookup(
     };
     const double low = mix(i);
     const double high = mix(i + 1);
-    const bool beyond = x / x_step > IndenterTable::kEntries - 1.0;
-    return {low + part * (high - low), beyond ? 0.0 : (high - low) / x_step};
+    return {low + part * (high - low), (high - low) / x_step};
 }
 
-// The floor keeps the slope of depth over force at 1/Kc or more everywhere: the table's own
-// slope falls with force, so its value at the end of the table is the smallest.
-double floored_linear(const LocalLaw& law, const Level& level) noexcept {
-    const IndenterTable& t = *law.table;
+// The table's last point and the slope of D over force there.
+struct TableEnd {
+    double force_n, depth_m, slope_mpn;
+};
+
+TableEnd end_of(const IndenterTable& t, const Level& level) noexcept {
     const double x = (IndenterTable::kEntries - 1) * t.x_step;
     const Entry g = lookup(t.depth_over_x_m, level, x, t.x_step);
-    const double end_slope = (g.value + x * g.slope) / (3.0 * t.force_scale_n * x * x);
-    return std::max(law.normal_mpn, law.floor_mpn - end_slope);
+    return {t.force_scale_n * x * x * x, x * g.value,
+            (g.value + x * g.slope) / (3.0 * t.force_scale_n * x * x)};
 }
 
 } // namespace
@@ -62,10 +63,19 @@ LawPoint law_at(const LocalLaw& law, double x) noexcept {
     }
     const IndenterTable& t = *law.table;
     const Level level = level_of(t, law.radius_over_thickness);
-    const Entry g = lookup(t.depth_over_x_m, level, x, t.x_step);
-    const double linear = floored_linear(law, level);
+    const TableEnd end = end_of(t, level);
     const double force = t.force_scale_n * x * x * x;
     const double dforce = 3.0 * t.force_scale_n * x * x;
+
+    // D's slope falls with force, so its value at the end of the table is the smallest: this
+    // linear part keeps the slope of the sum at 1/Kc or more everywhere
+    const double linear = std::max(law.normal_mpn, law.floor_mpn - end.slope_mpn);
+
+    // beyond the table the contact radius stays, so D goes on along its last slope
+    if (force > end.force_n)
+        return {force, end.depth_m + end.slope_mpn * (force - end.force_n) + linear * force, dforce,
+                (end.slope_mpn + linear) * dforce};
+    const Entry g = lookup(t.depth_over_x_m, level, x, t.x_step);
     return {force, x * g.value + linear * force, dforce, g.value + x * g.slope + linear * dforce};
 }
 

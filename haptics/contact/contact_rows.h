@@ -43,6 +43,9 @@ struct ContactMemory {
     double x = 0.0;             // root of the law, the warm start
 };
 
+/// At most this many Gauss-Seidel sweeps; two tools a millimetre apart need some dozens.
+inline constexpr int kMaxSweeps = 200;
+
 struct ContactSolution {
     std::array<glm::dvec3, kTools> force_n{}; // on the tool
     std::array<glm::dvec3, kTools> slip_m{};  // tangential slip of the tip over the surface
@@ -55,5 +58,12 @@ struct ContactSolution {
 /// Real-time safe. Non-finite input gives zero force and residual infinity.
 ContactSolution solve_contact(const ContactProblem& problem,
                               std::array<ContactMemory, kTools>& memory) noexcept;
+
+/// How far the contact point will slip for this tip position, judged before the solve from the
+/// last normal force and friction: the whole tangential offset if not touching or frictionless,
+/// else what the stick trial exceeds the Coulomb disc by. Carry the point by this, solve, then
+/// apply the solution's remaining slip. `own_compliance`: this tool's W_ii. Real-time safe.
+glm::dvec3 predicted_slip(const ContactRow& row, const glm::dmat3& own_compliance,
+                          const ContactMemory& memory) noexcept;
 
 } // namespace haptics
