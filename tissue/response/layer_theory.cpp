@@ -1,3 +1,5 @@
+// tissue/response/layer_theory.cpp
+// Layer integrals and the integral equation of a tip on a layer. Set-up, any thread.
 #include "tissue/response/layer_theory.h"
 
 #include <algorithm>

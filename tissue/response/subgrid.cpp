@@ -1,3 +1,5 @@
+// tissue/response/subgrid.cpp
+// Compliances and the sphere's law from the layer theory. Set-up, any thread.
 #include "tissue/response/subgrid.h"
 
 #include "tissue/response/layer_theory.h"

@@ -1,0 +1,20 @@
+// tissue/response/mesh_term.h
+// The mesh term dW = W_quadratic - W_linear >= 0 of the same mesh under the same kernel, which
+// softens what linear tetrahedra make too stiff (linear shapes are a subspace of the quadratic
+// ones, so the difference has one sign). Statics, anchored nodes fixed. Slow: bake time.
+#pragma once
+
+#include "tissue/response/footprint.h"
+
+namespace tissue {
+
+/// Fills surface.mesh_term_n_m and _t_m; call after make_footprints, with the same options.
+/// Solved at the corners of the body's boundary, mean of two tangents, interpolated to the skin.
+/// `progress` (may be empty) is called with 0..1.
+/// Throws std::invalid_argument for sizes that do not fit, a Poisson's ratio out of range, and a
+/// body that nothing holds: it has no static compliance.
+void make_mesh_terms(const TetMesh& mesh, double poisson, std::span<const std::uint8_t> anchored,
+                     const FootprintOptions& options, ContactSurface& surface,
+                     void (*progress)(double share) = nullptr);
+
+} // namespace tissue
