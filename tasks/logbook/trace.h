@@ -35,7 +35,9 @@ struct StepTrace {
     std::array<std::array<std::int32_t, 3>, kMaxTargets> target_um{};
 };
 
-/// One second of ticks (and the FEM steps adopted in it), delta-coded and compressed.
+/// One second of ticks (and the FEM steps adopted in it), delta-coded and compressed. The bytes
+/// give back exactly what went in, except places beyond `targets`, which come back as 0. Throws
+/// std::invalid_argument above 10 000 ticks or steps, or if `targets` is not in 0..kMaxTargets.
 std::vector<std::byte> encode_chunk(std::span<const TickTrace> ticks,
                                     std::span<const StepTrace> steps);
 
@@ -43,7 +45,8 @@ struct Chunk {
     std::vector<TickTrace> ticks;
     std::vector<StepTrace> steps;
 };
-/// Throws std::invalid_argument on damaged bytes, saying what and where. Safe on hostile bytes.
+/// Throws std::invalid_argument on damaged bytes, saying what and where. Safe on hostile bytes:
+/// takes at most about 15 MB, whatever they claim.
 Chunk decode_chunk(std::span<const std::byte> bytes);
 
 } // namespace tasks
