@@ -89,4 +89,11 @@ double tangential_compliance(const LocalLaw& law, double x) noexcept {
     return std::max(t.tangential_m2pn / radius + law.tangential_mpn, law.floor_mpn);
 }
 
+double contact_radius(const LocalLaw& law, double x) noexcept {
+    if (!law.table)
+        return 0.0;
+    const Level level = level_of(*law.table, law.radius_over_thickness);
+    return lookup(law.table->contact_radius_m, level, x, law.table->x_step).value;
+}
+
 } // namespace haptics

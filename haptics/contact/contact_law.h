@@ -47,4 +47,7 @@ LawPoint law_at(const LocalLaw& law, double x) noexcept;
 /// Tangential compliance in m/N at normal-force coordinate x, never below the floor.
 double tangential_compliance(const LocalLaw& law, double x) noexcept;
 
+/// Radius of the contact disc at x, m; of a rigid body 0.
+double contact_radius(const LocalLaw& law, double x) noexcept;
+
 } // namespace haptics

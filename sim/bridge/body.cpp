@@ -84,7 +84,7 @@ Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Ma
     body.normal_mpn.assign(vertices, 0.0);
     body.tangential_mpn.assign(vertices, 0.0);
     if (body.organ->rigid) {
-        tissue::vertex_normals(skin.triangles, body.skin_m, body.skin_normal);
+        tissue::place_surface(skin, {}, {}, body.skin_m, body.skin_normal);
         return body;
     }
     body.table = make_table(material, tip_radius_m);

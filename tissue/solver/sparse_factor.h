@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace tissue {
@@ -37,6 +38,9 @@ class SparseFactor {
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+/// Name and build of the BLAS under the factor, for the logbook: bits depend on it.
+std::string blas_name();
 
 /// y = A x for the full symmetric matrix. Sizes must fit.
 void multiply(const SparsePattern& pattern, std::span<const double> values,

@@ -1,0 +1,129 @@
+#include "sim/study/indent.h"
+
+#include "haptics/contact/contact_rows.h"
+#include "haptics/contact/surface_walk.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <random>
+#include <stdexcept>
+
+namespace sim {
+namespace {
+
+// Force of a normal press: compliance * P + law(P) = depth, by the contact solver itself.
+double force_at(const haptics::LocalLaw& law, double compliance_mpn, double depth_m,
+                double radius_m) {
+    haptics::ContactProblem problem;
+    problem.row[0] = {.active = true,
+                      .tip_m = {0.0, 0.0, radius_m - depth_m},
+                      .surface_free_m = {0.0, 0.0, 0.0},
+                      .normal = {0.0, 0.0, 1.0},
+                      .tip_radius_m = radius_m,
+                      .friction = 0.0,
+                      .law = law};
+    for (auto& line : problem.compliance) line.fill(glm::dmat3{0.0});
+    problem.compliance[0][0] = glm::dmat3{compliance_mpn};
+    std::array<haptics::ContactMemory, haptics::kTools> memory{};
+    return haptics::solve_contact(problem, memory).force_n[0].z;
+}
+
+bool anchored_below(const Body& body, const tissue::Triangle& corners) {
+    const tissue::ContactSurface& skin = body.organ->surface;
+    for (const std::uint32_t v : corners) {
+        for (std::uint32_t k = skin.row_start[v]; k < skin.row_start[v + 1]; ++k) {
+            if (body.organ->anchored[skin.row_node[k]]) return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+Indenter::Indenter(std::shared_ptr<const tissue::BakedOrgan> organ,
+                   const tissue::Material& material, double tip_radius_m)
+    : body_(make_body(std::move(organ), material, tip_radius_m,
+                      std::numeric_limits<double>::infinity())) {
+    if (!body_.soft) throw std::invalid_argument("a rigid organ cannot be indented");
+}
+
+IndentPoint Indenter::press(const glm::dvec3& near_m, std::span<const double> depth_m) {
+    const Foot foot = nearest_on(body_, near_m);
+    SoftBody& soft = *body_.soft;
+    const std::size_t n = static_cast<std::size_t>(soft.model.unknowns);
+    IndentPoint out;
+    out.place_m = place_on(body_, foot.at);
+    out.normal = normal_on(body_, foot.at);
+    const std::span<double> block(soft.answer_m.data(), 3 * n);
+    std::fill(block.begin(), block.end(), 0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 direction{0.0};
+        direction[axis] = 1.0;
+        tissue::add_row(soft.model, body_.organ->surface, tissue_point(foot.at), direction, 1.0,
+                        block.subspan(axis * n, n));
+    }
+    soft.system.factor.solve(block, 3);
+    glm::dmat3 compliance;
+    for (int axis = 0; axis < 3; ++axis) {
+        compliance[axis] = tissue::row_value(soft.model, body_.organ->surface,
+                                             tissue_point(foot.at), block.subspan(axis * n, n));
+    }
+    out.mesh_mpn = glm::dot(out.normal, compliance * out.normal);
+    out.tangential_mpn =
+        0.5 * (compliance[0][0] + compliance[1][1] + compliance[2][2] - out.mesh_mpn);
+    const haptics::LocalLaw law = law_on(body_, foot.at, 0.0);
+    out.linear_mpn = law.normal_mpn;
+    const double radius_m = body_.organ->tip_radius_max_m;
+    for (const double d : depth_m) {
+        out.force_n.push_back(force_at(law, out.mesh_mpn, d, radius_m));
+    }
+    return out;
+}
+
+std::vector<glm::dvec3> random_places(const Body& body, int count, std::uint64_t seed) {
+    const tissue::ContactSurface& skin = body.organ->surface;
+    std::vector<double> area_sum;
+    std::vector<std::size_t> triangle;
+    double sum = 0.0;
+    for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
+        const tissue::Triangle& c = skin.triangles[t];
+        if (anchored_below(body, c)) continue;
+        sum += glm::length(glm::cross(skin.rest_m[c[1]] - skin.rest_m[c[0]],
+                                      skin.rest_m[c[2]] - skin.rest_m[c[0]]));
+        area_sum.push_back(sum);
+        triangle.push_back(t);
+    }
+    if (triangle.empty()) throw std::invalid_argument("no skin is free of anchored tissue");
+    std::mt19937_64 random(seed);
+    const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1.0p-53; };
+    std::vector<glm::dvec3> places;
+    for (int i = 0; i < count; ++i) {
+        const auto at = std::lower_bound(area_sum.begin(), area_sum.end(), unit() * sum);
+        const tissue::Triangle& c = skin.triangles[triangle[at - area_sum.begin()]];
+        double a = unit(), b = unit();
+        if (a + b > 1.0) {
+            a = 1.0 - a;
+            b = 1.0 - b;
+        }
+        places.push_back((1.0 - a - b) * skin.rest_m[c[0]] + a * skin.rest_m[c[1]] +
+                         b * skin.rest_m[c[2]]);
+    }
+    return places;
+}
+
+std::vector<glm::dvec3> slide_places(const Body& body, const glm::dvec3& from_m,
+                                     const glm::dvec3& heading, double length_m, int steps) {
+    haptics::SurfacePoint at = nearest_on(body, from_m).at;
+    std::vector<glm::dvec3> places{place_on(body, at)};
+    glm::dvec3 direction = glm::normalize(heading);
+    for (int i = 0; i < steps; ++i) {
+        const glm::dvec3 n = normal_on(body, at);
+        direction = glm::normalize(direction - glm::dot(direction, n) * n);
+        at = haptics::walk(BodySurface{body}, at, length_m / steps * direction).point;
+        places.push_back(place_on(body, at));
+    }
+    return places;
+}
+
+}  // namespace sim
