@@ -67,9 +67,9 @@ double finite_seconds(double seconds) {
 
 } // namespace
 
-std::string junit_xml(std::string_view suite, std::span<const Expectation> results) {
+std::string junit_xml(std::string_view suite, std::span<const ExpectationResult> results) {
     double total_s = 0.0;
-    for (const Expectation& result : results)
+    for (const ExpectationResult& result : results)
         total_s += finite_seconds(result.seconds);
     const auto failures =
         std::count_if(results.begin(), results.end(), [](const auto& r) { return !r.ok; });
@@ -79,7 +79,7 @@ std::string junit_xml(std::string_view suite, std::span<const Expectation> resul
     xml += fmt::format("<testsuites>\n  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" "
                        "errors=\"0\" skipped=\"0\" time=\"{:.3f}\">\n",
                        name, results.size(), failures, total_s);
-    for (const Expectation& result : results) {
+    for (const ExpectationResult& result : results) {
         xml += fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"", name,
                            escaped(result.name), finite_seconds(result.seconds));
         if (result.ok)

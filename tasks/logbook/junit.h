@@ -9,7 +9,7 @@
 
 namespace tasks {
 
-struct Expectation {
+struct ExpectationResult {
     std::string name; // "path_length <= 0.8 m"
     bool ok = false;
     std::string message; // what was seen; shown when not ok
@@ -19,6 +19,6 @@ struct Expectation {
 /// One <testsuite>. Any bytes may stand in the texts: what XML 1.0 cannot hold (control characters,
 /// broken UTF-8, lone surrogates) becomes U+FFFD. Numbers have a point in every locale; a time that
 /// is not finite or negative is written as 0.
-std::string junit_xml(std::string_view suite, std::span<const Expectation> results);
+std::string junit_xml(std::string_view suite, std::span<const ExpectationResult> results);
 
 } // namespace tasks

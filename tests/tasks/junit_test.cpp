@@ -9,7 +9,7 @@
 namespace {
 
 std::string name_attribute(const std::string& name) {
-    const std::vector<tasks::Expectation> one{{.name = name, .ok = true, .message = ""}};
+    const std::vector<tasks::ExpectationResult> one{{.name = name, .ok = true, .message = ""}};
     const std::string xml = tasks::junit_xml("s", one);
     const std::string before = "classname=\"s\" name=\"";
     const auto begin = xml.find(before) + before.size();
@@ -19,7 +19,7 @@ std::string name_attribute(const std::string& name) {
 } // namespace
 
 TEST_CASE("a suite lists passes and failures with their counts and times") {
-    const std::vector<tasks::Expectation> results{
+    const std::vector<tasks::ExpectationResult> results{
         {.name = "time", .ok = true, .message = "unused", .seconds = 1.25},
         {.name = "path_length", .ok = false, .message = "0.9 m > 0.8 m", .seconds = 0.5}};
     CHECK(tasks::junit_xml("touch-points", results) ==
@@ -55,7 +55,8 @@ TEST_CASE("what XML cannot hold becomes the replacement character, the rest stay
 TEST_CASE("no text of any bytes adds a tag or a raw control character") {
     CHECK(rc::check("any bytes", [] {
         const auto text = *rc::gen::arbitrary<std::string>();
-        const std::vector<tasks::Expectation> one{{.name = text, .ok = false, .message = text}};
+        const std::vector<tasks::ExpectationResult> one{
+            {.name = text, .ok = false, .message = text}};
         const std::string xml = tasks::junit_xml(text, one);
         // Eight tags, the declaration and twelve attributes; nothing else.
         RC_ASSERT(std::count(xml.begin(), xml.end(), '<') == 8);
@@ -67,7 +68,7 @@ TEST_CASE("no text of any bytes adds a tag or a raw control character") {
 }
 
 TEST_CASE("a time that is no time is written as zero") {
-    const std::vector<tasks::Expectation> results{
+    const std::vector<tasks::ExpectationResult> results{
         {.name = "a",
          .ok = true,
          .message = "",
