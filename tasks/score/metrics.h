@@ -23,30 +23,47 @@ struct Metric {
 struct ScoreState {
     std::array<std::vector<glm::dvec3>, kTools> tip_m;   // 1 kHz
     std::array<std::vector<float>, kTools> force_n;      // length of the tip force
-    std::array<std::vector<std::uint8_t>, kTools> flags; // 1 touching, 2 in view
+    std::array<std::vector<std::uint8_t>, kTools> flags; // 1 touching, 2 in view, 4 present
     std::int64_t first_tick = 0, last_tick = -1;
 };
+/// One millisecond. Ticks follow each other: a paused attempt's ticks stand still. Pure, resumable.
 void observe(ScoreState& score, const Observation& seen);
 
 struct ScoreContext {
     double force_limit_n = 2.0;
     std::array<Role, kTools> role{Role::left, Role::right, Role::assist};
-    std::vector<glm::dvec3> ideal_path_m; // per tool visits: targets in order, by role
+    // Where a tip has to be for each target of the exercise, in order, at rest, and which role
+    // goes there: the surface place plus the tip's radius along the normal.
+    std::vector<glm::dvec3> ideal_path_m;
     std::vector<Role> ideal_role;
-    double target_radius_m = 3e-3;
+    double target_radius_m = 3e-3; // tolerance ball about each place
     bool forces_on = true;
 };
 
-/// time, path_length, economy, ldlj, out_of_view, force_mean, force_peak, over_force, errors (and
-/// by kind), combined and per role where metrics.md says so.
+/// All metrics, over first movement .. completion (or the last sample). Version 1 of:
+///   time                    s; 0 if nothing moved
+///   path_length*            m, of the 10 Hz low-passed tip
+///   economy*                ideal / path_length, 0..1; ideal = shortest tour from the tip's place
+///                           at the first movement through the balls of the targets touched so
+///                           far, straight through obstacles; 0 if nothing was touched
+///   speed_mean*, idle*      m/s; share of time below 2 mm/s (combined: mean of the tools)
+///   ldlj*                   median over sub-movements (smoothness.h); absent without any
+///   out_of_view*            share of tool ticks
+///   force_mean*, force_peak*, impulse*   N, N, N s over contact ticks; 0 without contact
+///   over_force*             s above the limit (combined: any tool above it), unfiltered
+///   over_force_episodes, errors, errors.KIND for all four kinds   counts, from the events
+/// * also per role, as id.left, id.right, id.assist, for tools that were present.
 std::vector<Metric> finish(const ScoreState& score, const TouchProgress& progress,
                            const ScoreContext& context);
 
 /// Log dimensionless jerk of a speed-defining path sampled at fs, unfiltered:
 /// -ln( T^3 / v_peak^2 * integral (d2v/dt2)^2 dt ), T = N/fs (Balasubramanian et al. 2015).
+/// Nothing for fewer than 3 samples, rest, or motion without any jerk.
 std::optional<double> ldlj(std::span<const double> speed_mps, double fs_hz);
 
-/// Zero-phase second-order Butterworth low pass (forward and backward), edges reflected.
+/// Zero-phase second-order Butterworth low pass (forward and backward: gain 1/2 at the cut-off),
+/// reflected through the end points, so that rest and straight uniform motion pass unchanged.
+/// Same length as the path; a cut-off of half the rate or more returns the path itself.
 std::vector<glm::dvec3> low_pass(std::span<const glm::dvec3> path_m, double fs_hz,
                                  double cutoff_hz);
 

@@ -1,0 +1,214 @@
+#include "tasks/exercise/toml_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <toml.hpp>
+
+namespace tasks {
+
+struct TomlTable::Node {
+    toml::value value;
+    std::string file;
+    std::size_t line = 1; // of the table's first key or header
+};
+
+namespace {
+
+// Deeper nesting than any of our files has; toml11 descends once per bracket.
+constexpr int kMaxNesting = 32;
+
+[[noreturn]] void fail(const std::string& file, std::size_t line, const std::string& what) {
+    throw std::invalid_argument(file + ":" + std::to_string(line) + ": " + what);
+}
+
+std::string number_text(double value) {
+    std::ostringstream out;
+    out << value;
+    return out.str();
+}
+
+std::string range_text(Range range) {
+    return number_text(range.min) + " to " + number_text(range.max);
+}
+
+// A value as a person would recognise it in the file, cut to one short line.
+std::string shown(const toml::value& value) {
+    std::string text;
+    try {
+        text = toml::format(value, 1u << 20);
+    } catch (const std::exception&) {
+        text = "?";
+    }
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    while (!text.empty() && text.back() == ' ')
+        text.pop_back();
+    return text.size() > 60 ? text.substr(0, 57) + "..." : text;
+}
+
+std::optional<double> as_number(const toml::value& value) {
+    if (value.is_integer())
+        return static_cast<double>(value.as_integer());
+    if (value.is_floating())
+        return value.as_floating();
+    return {};
+}
+
+bool inside(double value, Range range) { // false for NaN
+    return value >= range.min && value <= range.max;
+}
+
+std::string first_line(const std::string& text) {
+    return text.substr(0, std::min(text.find('\n'), std::size_t{160}));
+}
+
+std::size_t line_of_deep_nesting(std::string_view text) {
+    int open = 0;
+    std::size_t line = 1;
+    for (const char c : text) {
+        open += (c == '[' || c == '{') - (c == ']' || c == '}');
+        if (c == '\n') {
+            ++line;
+            open = std::max(open, 0);
+        }
+        if (open > kMaxNesting)
+            return line;
+    }
+    return 0;
+}
+
+} // namespace
+
+TomlTable TomlTable::parse(std::string_view text, std::string_view file) {
+    const std::string name(file);
+    if (const std::size_t line = line_of_deep_nesting(text); line != 0)
+        fail(name, line, "brackets nest too deep: not a file of ours");
+    // toml11 asserts on a key or value cut off by the end of the bytes unless a newline follows.
+    std::istringstream stream{std::string(text) + "\n"};
+    try {
+        Node node{toml::parse(stream, name), name};
+        return TomlTable(std::make_shared<const Node>(std::move(node)));
+    } catch (const toml::syntax_error& error) {
+        fail(name, error.location().line(), "not TOML: " + first_line(error.what()));
+    } catch (const std::exception& error) {
+        fail(name, 1, "not TOML: " + first_line(error.what()));
+    }
+}
+
+void TomlTable::accept_only(std::initializer_list<std::string_view> keys) const {
+    // In the order of the file, so that the first mistake is the one reported.
+    const toml::value* first = nullptr;
+    std::string first_key;
+    for (const auto& [key, value] : node_->value.as_table()) {
+        if (std::find(keys.begin(), keys.end(), key) != keys.end())
+            continue;
+        const bool earlier = first == nullptr || value.location().line() < first->location().line();
+        const bool same_line =
+            first != nullptr && value.location().line() == first->location().line();
+        if (earlier || (same_line && key < first_key)) {
+            first = &value;
+            first_key = key;
+        }
+    }
+    if (first == nullptr)
+        return;
+    std::string known;
+    for (const std::string_view key : keys)
+        known += (known.empty() ? "" : ", ") + std::string(key);
+    refuse(first_key, "unknown key; accepted here: " + known);
+}
+
+bool TomlTable::has(std::string_view key) const {
+    return node_->value.contains(std::string(key));
+}
+
+double TomlTable::number(std::string_view key, Range range, std::optional<double> fallback) const {
+    const std::string accepted = "a number from " + range_text(range);
+    if (!has(key)) {
+        if (fallback)
+            return *fallback;
+        refuse(key, accepted);
+    }
+    const std::optional<double> value = as_number(node_->value.at(std::string(key)));
+    if (!value || !inside(*value, range))
+        refuse(key, accepted);
+    return *value;
+}
+
+std::string TomlTable::text(std::string_view key, std::optional<std::string> fallback) const {
+    if (!has(key) && fallback)
+        return *fallback;
+    if (!has(key) || !node_->value.at(std::string(key)).is_string())
+        refuse(key, "text in quotes");
+    const std::string value = node_->value.at(std::string(key)).as_string().str;
+    if (value.empty())
+        refuse(key, "text in quotes that is not empty");
+    return value;
+}
+
+int TomlTable::choice(std::string_view key, const std::vector<std::string>& choices) const {
+    std::string accepted;
+    for (const std::string& choice : choices)
+        accepted += (accepted.empty() ? "one of \"" : "\", \"") + choice;
+    accepted += "\"";
+    if (!has(key) || !node_->value.at(std::string(key)).is_string())
+        refuse(key, accepted);
+    const std::string value = node_->value.at(std::string(key)).as_string().str;
+    const auto found = std::find(choices.begin(), choices.end(), value);
+    if (found == choices.end())
+        refuse(key, accepted);
+    return static_cast<int>(found - choices.begin());
+}
+
+glm::dvec3 TomlTable::place_mm(std::string_view key, Range range_mm) const {
+    const std::string accepted = "[x, y, z] in millimetres, each " + range_text(range_mm);
+    if (!has(key) || !node_->value.at(std::string(key)).is_array())
+        refuse(key, accepted);
+    const toml::array& cells = node_->value.at(std::string(key)).as_array();
+    if (cells.size() != 3)
+        refuse(key, accepted);
+    glm::dvec3 place_m{0.0};
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::optional<double> value = as_number(cells[static_cast<std::size_t>(axis)]);
+        if (!value || !inside(*value, range_mm))
+            refuse(key, accepted);
+        place_m[axis] = *value * 1e-3;
+    }
+    return place_m;
+}
+
+TomlTable TomlTable::table(std::string_view key) const {
+    if (!has(key) || !node_->value.at(std::string(key)).is_table())
+        refuse(key, "a table written as [" + std::string(key) + "]");
+    const toml::value& value = node_->value.at(std::string(key));
+    Node node{value, node_->file, value.location().line()};
+    return TomlTable(std::make_shared<const Node>(std::move(node)));
+}
+
+std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
+    std::vector<TomlTable> found;
+    if (!has(key))
+        return found;
+    const toml::value& list = node_->value.at(std::string(key));
+    const std::string accepted = "tables written as [[" + std::string(key) + "]]";
+    if (!list.is_array())
+        refuse(key, accepted);
+    for (const toml::value& item : list.as_array()) {
+        if (!item.is_table())
+            refuse(key, accepted);
+        Node node{item, node_->file, item.location().line()};
+        found.push_back(TomlTable(std::make_shared<const Node>(std::move(node))));
+    }
+    return found;
+}
+
+void TomlTable::refuse(std::string_view key, const std::string& accepted) const {
+    const std::string name(key);
+    if (!has(key))
+        fail(node_->file, node_->line, name + " is missing: " + accepted);
+    const toml::value& value = node_->value.at(name);
+    fail(node_->file, value.location().line(), name + " = " + shown(value) + ": " + accepted);
+}
+
+} // namespace tasks

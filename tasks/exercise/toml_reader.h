@@ -1,0 +1,53 @@
+// tasks/exercise/toml_reader.h
+// Reads tables of TOML bytes with messages a person can act on: file, line, key, value and what
+// would be accepted. Called by the parsers of tasks/ (exercises, scripts); toml11 stays behind it.
+// Not real-time safe. Everything throws std::invalid_argument and nothing else.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tasks {
+
+struct Range { // inclusive
+    double min = 0.0, max = 0.0;
+};
+
+/// One table of a file. Copies are cheap views of the same parsed file.
+class TomlTable {
+  public:
+    /// The whole file. `text` may be any bytes.
+    static TomlTable parse(std::string_view text, std::string_view file);
+
+    /// Any other key in this table is an error; the message lists these.
+    void accept_only(std::initializer_list<std::string_view> keys) const;
+    bool has(std::string_view key) const;
+
+    // The value of `key`; without it the fallback, or an error if there is none. Numbers may be
+    // written as integers. Out of range and not finite are errors.
+    double number(std::string_view key, Range range, std::optional<double> fallback = {}) const;
+    std::string text(std::string_view key, std::optional<std::string> fallback = {}) const;
+    /// One of `choices`; returns its index.
+    int choice(std::string_view key, const std::vector<std::string>& choices) const;
+    /// [x, y, z] in millimetres, returned in metres; each component inside the range (mm).
+    glm::dvec3 place_mm(std::string_view key, Range range_mm) const;
+    /// The table written as [key]; an error without it.
+    TomlTable table(std::string_view key) const;
+    /// [[key]] tables in the order of the file; none if the key is absent.
+    std::vector<TomlTable> tables(std::string_view key) const;
+
+    /// Throws: "file:line: key = value: `accepted`". Without the key: names the table's line.
+    [[noreturn]] void refuse(std::string_view key, const std::string& accepted) const;
+
+  private:
+    struct Node;
+    explicit TomlTable(std::shared_ptr<const Node> node) : node_(std::move(node)) {}
+    std::shared_ptr<const Node> node_;
+};
+
+} // namespace tasks

@@ -1,0 +1,131 @@
+#include "tasks/exercise/touch_points.h"
+
+#include <doctest/doctest.h>
+#include <fstream>
+#include <rapidcheck.h>
+#include <sstream>
+
+using tasks::parse_touch_points;
+
+namespace {
+
+const std::string kGood = R"(id = "t"
+title = "T"
+card = "Do it."
+radius_m = 0.004
+force_limit_n = 3
+[[target]]
+id = "1"
+role = "left"
+at_mm = [1, 2.5, -3]
+[[target]]
+id = "2"
+role = "assist"
+at_mm = [20, 0, 0]
+)";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, from.size(), to);
+}
+
+std::string message(const std::string& text) {
+    try {
+        parse_touch_points(text, "x.toml");
+    } catch (const std::invalid_argument& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+} // namespace
+
+TEST_CASE("an exercise file becomes the exercise, millimetres become metres") {
+    const tasks::TouchPoints exercise = parse_touch_points(kGood, "x.toml");
+    CHECK(exercise.id == "t");
+    CHECK(exercise.card == "Do it.");
+    CHECK(exercise.radius_m == 0.004);
+    CHECK(exercise.force_limit_n == 3.0);
+    CHECK(exercise.hold_s == 0.3); // the standard
+    REQUIRE(exercise.target.size() == 2);
+    CHECK(exercise.target[0].role == tasks::Role::left);
+    CHECK(exercise.target[1].role == tasks::Role::assist);
+    CHECK(exercise.target[0].at_m.y == doctest::Approx(2.5e-3));
+}
+
+TEST_CASE("a mistake in an exercise file is named by file, line, key, value and what is accepted") {
+    const auto said = [](const std::string& from, const std::string& to) {
+        return message(replaced(kGood, from, to));
+    };
+    CHECK(said("radius_m = 0.004", "radius_m = 4") ==
+          "x.toml:4: radius_m = 4: a number from 0.0005 to 0.02");
+    CHECK(said("radius_m = 0.004", "radius_m = nan") ==
+          "x.toml:4: radius_m = nan: a number from 0.0005 to 0.02");
+    CHECK(said("radius_m = 0.004", "radius_m = \"4\"") ==
+          "x.toml:4: radius_m = \"4\": a number from 0.0005 to 0.02");
+    CHECK(said("\"left\"", "\"middle\"") ==
+          "x.toml:8: role = \"middle\": one of \"left\", \"right\", \"assist\"");
+    CHECK(said("[20, 0, 0]", "[20, 0]") ==
+          "x.toml:13: at_mm = [20,0]: [x, y, z] in millimetres, each -500 to 500");
+    CHECK(said("force_limit_n = 3", "force_limt_n = 3") ==
+          "x.toml:5: force_limt_n = 3: unknown key; accepted here: id, title, card, radius_m, "
+          "force_min_n, force_max_n, hold_s, force_limit_n, time_limit_s, target");
+    CHECK(said("title = \"T\"\n", "") == "x.toml:1: title is missing: text in quotes");
+    CHECK(said("id = \"2\"", "id = \"1\"") ==
+          "x.toml:11: id = \"1\": an id that no other target has");
+    CHECK(said("at_mm = [20, 0, 0]", "") ==
+          "x.toml:10: at_mm is missing: [x, y, z] in millimetres, each -500 to 500");
+}
+
+TEST_CASE("targets that one touch could reach together are refused") {
+    CHECK(message(replaced(kGood, "[20, 0, 0]", "[8, 2.5, -3]")).starts_with("x.toml:13: at_mm"));
+    CHECK(message(replaced(kGood, "[20, 0, 0]", "[9.1, 2.5, -3]")) == "accepted");
+}
+
+TEST_CASE("a band that cannot be is refused") {
+    CHECK(message("force_min_n = 2\nforce_max_n = 1\n" + kGood)
+              .starts_with("x.toml:2: force_max_n = 1"));
+    CHECK(message("force_max_n = 4\n" + kGood).starts_with("x.toml:6: force_limit_n = 3"));
+}
+
+TEST_CASE("no target and seventeen targets are refused") {
+    const std::string head = kGood.substr(0, kGood.find("[[target]]"));
+    CHECK(message(head).starts_with("x.toml:1: target is missing: 1 to 16"));
+    std::string many = head;
+    for (int i = 0; i < 17; ++i)
+        many += "[[target]]\nid = \"" + std::to_string(i) + "\"\nrole = \"left\"\nat_mm = [" +
+                std::to_string(10 * i) + ", 0, 0]\n";
+    CHECK(message(many).starts_with("x.toml:71: id = \"16\": at most 16"));
+}
+
+TEST_CASE("what is not TOML is refused with its line") {
+    CHECK(message(replaced(kGood, "title = \"T\"", "title = ")).starts_with("x.toml:2: not TOML"));
+    CHECK(message(replaced(kGood, "title = \"T\"", "title = \"T")).starts_with("x.toml:"));
+    CHECK(message(std::string(100000, '[')) ==
+          "x.toml:1: brackets nest too deep: not a file of ours");
+}
+
+TEST_CASE("any bytes are refused or accepted, never worse") {
+    CHECK(rc::check("damaged files",
+                    [](std::vector<std::pair<unsigned, char>> changes, unsigned cut) {
+                        std::string text = kGood;
+                        for (const auto& [at, byte] : changes)
+                            text[at % text.size()] = byte;
+                        text.resize(cut % (text.size() + 1));
+                        message(text);
+                    }));
+    CHECK(rc::check("noise", [](const std::string& text) { message(text); }));
+}
+
+TEST_CASE("the shipped exercise has nine targets, three for each tool") {
+    std::ifstream file(TROCAR_ASSETS "/exercises/touch-points.toml");
+    std::stringstream text;
+    text << file.rdbuf();
+    const tasks::TouchPoints exercise = parse_touch_points(text.str(), "touch-points.toml");
+    REQUIRE(exercise.target.size() == 9);
+    std::array<int, 4> roles{};
+    for (const tasks::TouchTarget& target : exercise.target)
+        ++roles[static_cast<std::size_t>(target.role)];
+    CHECK(roles == std::array<int, 4>{3, 3, 3, 0});
+}
