@@ -30,7 +30,7 @@ struct Entry {
 Entry lookup(
     const std::array<std::array<double, IndenterTable::kEntries>, IndenterTable::kLevels>& rows,
     const Level& level, double x, double x_step) noexcept {
-    const double at = std::min(x / x_step, IndenterTable::kEntries - 1.0);
+    const double at = x > 0.0 ? std::min(x / x_step, IndenterTable::kEntries - 1.0) : 0.0;
     const int i = std::min(static_cast<int>(at), IndenterTable::kEntries - 2);
     const double part = at - i;
     const auto mix = [&](int k) {

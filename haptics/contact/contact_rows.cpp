@@ -50,7 +50,7 @@ double normal_root(const LocalLaw& law, double w_nn, double reach_m, double warm
     double x = warm_x > low && warm_x < high ? warm_x : high;
     for (int i = 0; i < 100; ++i) {
         const auto [value, slope] = excess(x);
-        if (std::abs(value) <= 0.01 * kTolerance_m)
+        if (std::abs(value) <= 1e-4 * kTolerance_m)
             break;
         (value > 0.0 ? high : low) = x;
         const double newton = x - value / slope;

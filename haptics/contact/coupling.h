@@ -48,6 +48,7 @@ struct CouplingResult {
     bool promoted = false; // pending became active in this tick: the slot of the old
                            // active answer may be reused by the caller
     int replayed = 0;      // ticks replayed in this call, for the tick budget
+    int slid_off = 0;      // tools that left their patch over its rim: no force, no ghost
     double solve_residual_m = 0.0;
 };
 

@@ -1,0 +1,20 @@
+#include "haptics/contact/coupling.h"
+
+namespace haptics {
+
+CouplingResult hold_tick(CouplingState& state, const CouplingConfig&, const PoseHistory&,
+                         std::int64_t tick) noexcept {
+    CouplingResult result;
+    if (state.pending.answer) {
+        state.active = state.pending;
+        state.pending = {};
+        result.promoted = true;
+    }
+    state.active.tick = tick;
+    result.force_n = state.active.force_n;
+    for (int i = 0; i < kTools; ++i)
+        result.touching[i] = state.active.memory[i].touching;
+    return result;
+}
+
+} // namespace haptics
