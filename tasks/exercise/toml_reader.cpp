@@ -203,17 +203,6 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
     return found;
 }
 
-TomlTable TomlTable::table(std::string_view key) const {
-    const std::string accepted = "one table written as [" + std::string(key) + "]";
-    if (!has(key))
-        refuse(key, accepted);
-    const toml::value& value = node_->value.at(std::string(key));
-    if (!value.is_table())
-        refuse(key, accepted);
-    Node node{value, node_->file, value.location().line()};
-    return TomlTable(std::make_shared<const Node>(std::move(node)));
-}
-
 void TomlTable::refuse(std::string_view key, const std::string& accepted) const {
     const std::string name(key);
     if (!has(key))

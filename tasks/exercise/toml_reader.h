@@ -38,8 +38,6 @@ class TomlTable {
     glm::dvec3 place_mm(std::string_view key, Range range_mm) const;
     /// The table written as [key]; an error without it.
     TomlTable table(std::string_view key) const;
-    /// The table [key], which must be there.
-    TomlTable table(std::string_view key) const;
     /// [[key]] tables in the order of the file; none if the key is absent.
     std::vector<TomlTable> tables(std::string_view key) const;
 
