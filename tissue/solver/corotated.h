@@ -4,6 +4,7 @@
 //   A du = M v/dt - f_int(u) + f_ext - H^T F,  A = M/dt^2 + (alpha M + beta K)/dt + K,  v' = du/dt
 // K is the tangent at the beginning of the step, in the elastic and in the damping term alike.
 // If A is not positive definite the warped stiffness R Ke R^T is used for that step, and said.
+// Inverted tets take their warped stiffness in every step.
 //
 //   CorotatedModel   what never changes: mesh, masses, pattern
 //   CorotatedState   x and v of all nodes: all that a snapshot needs
@@ -43,10 +44,12 @@ struct CorotatedState {
 struct CorotatedSystem {
     double dt_s = 0.0;              // infinity: statics, A = K
     bool exact_tangent = true;      // false: fell back to the warped stiffness
+    bool factored = false;          // false: state not finite, or statics of a loose body
     int inverted = 0;               // tets with det F <= 0
     std::vector<double> internal_n; // f_int - f_ext on the unknowns
     std::vector<double> stiffness;  // K on the pattern
     std::vector<double> matrix;     // A on the pattern
+    std::vector<double> work;       // two vectors of unknowns
     SparseFactor factor;
 };
 
@@ -63,11 +66,17 @@ CorotatedModel make_corotated(const TetMesh& mesh, const Material& material,
 CorotatedState rest_state(const CorotatedModel& model);
 CorotatedSystem make_system(const CorotatedModel& model);
 
-/// f_int, K, A and its factor at `state`. No allocation outside CHOLMOD.
+/// f_int, K, A and its factor at `state`. No allocation outside CHOLMOD. `exact` false asks for
+/// the warped stiffness, for comparison.
 void linearize(const CorotatedModel& model, const CorotatedState& state, double dt_s,
-               CorotatedSystem& system) noexcept;
+               CorotatedSystem& system, bool exact = true) noexcept;
 
-/// du without contact: A du = M v/dt - f_int + f_ext. `du` has one entry per unknown.
+/// Elastic force of the tets on every node, anchored ones too, with the sign of f_int.
+void elastic_forces(const CorotatedModel& model, const CorotatedState& state,
+                    std::span<glm::dvec3> force_n) noexcept;
+
+/// du without contact: A du = M v/dt - f_int + f_ext. `du` has one entry per unknown; it is zero
+/// (relative residual 1) if the system could not be factored.
 StepReport free_motion(const CorotatedModel& model, const CorotatedState& state,
                        CorotatedSystem& system, std::span<double> du) noexcept;
 
@@ -75,7 +84,9 @@ StepReport free_motion(const CorotatedModel& model, const CorotatedState& state,
 void advance(const CorotatedModel& model, std::span<const double> du, double dt_s,
              CorotatedState& state) noexcept;
 
-/// Static equilibrium by Newton with line search from `state`; nodal loads on the unknowns.
+/// Static equilibrium from `state` by Newton with the exact tangent and a line search on the
+/// energy; velocities end at zero. `load_n`: on the unknowns, beside gravity; may be empty.
+/// Residual relative to |load and weight| + |elastic forces on all nodes, anchored ones too|.
 struct StaticReport {
     int iterations = 0;
     double relative_residual = 0.0;

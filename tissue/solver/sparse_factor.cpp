@@ -37,54 +37,107 @@ const char* word(int status) noexcept {
 
 } // namespace
 
+// The matrix is handed to CHOLMOD already in elimination order, so that each factorisation costs
+// one gather instead of two transpositions with their allocations (a tenth of the time).
 struct SparseFactor::Impl {
     cholmod_common common{};
-    std::vector<int> column_start, row; // own copy: `matrix` points into them
+    std::vector<int> order;                     // unknown that is eliminated k-th
+    std::vector<int> column_start, row, source; // permuted lower triangle; place in the values
+    std::vector<double> value;
     cholmod_sparse matrix{};
     cholmod_factor* factor = nullptr;
-    cholmod_dense *solution = nullptr, *work_y = nullptr, *work_e = nullptr; // kept by solve2
+    cholmod_dense *right = nullptr, *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
     bool usable = false;
 
-    explicit Impl(const SparsePattern& pattern)
-        : column_start(pattern.column_start), row(pattern.row) {
+    Impl() {
         openblas_set_num_threads(1);
         stay_on_this_thread();
         cholmod_start(&common);
         common.print = 0;
         common.supernodal = CHOLMOD_SUPERNODAL;
-        common.nmethods = 1;
-        common.method[0].ordering = CHOLMOD_AMD;
-        common.postorder = 1;
         common.quick_return_if_not_posdef = 1;
-
-        matrix.nrow = matrix.ncol = static_cast<std::size_t>(pattern.size);
-        matrix.nzmax = row.size();
-        matrix.p = column_start.data();
-        matrix.i = row.data();
-        matrix.stype = -1; // lower triangle
-        matrix.itype = CHOLMOD_INT;
-        matrix.xtype = CHOLMOD_PATTERN;
-        matrix.dtype = CHOLMOD_DOUBLE;
-        matrix.sorted = matrix.packed = 1;
+        common.nmethods = 1;
+        // larger supernodes than CHOLMOD's default: a node has three unknowns, and BLAS is better
+        // at zeros than at small blocks (measured at 900 to 2500 unknowns: 10-20 % faster)
+        common.nrelax[0] = 8, common.nrelax[1] = 32, common.nrelax[2] = 64;
+        common.zrelax[0] = 0.9, common.zrelax[1] = 0.3, common.zrelax[2] = 0.1;
     }
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
     ~Impl() {
+        cholmod_free_dense(&right, &common);
         cholmod_free_dense(&solution, &common);
         cholmod_free_dense(&work_y, &common);
         cholmod_free_dense(&work_e, &common);
         cholmod_free_factor(&factor, &common);
         cholmod_finish(&common);
     }
+
+    void describe(std::vector<int>& starts, std::vector<int>& rows) {
+        matrix.nrow = matrix.ncol = starts.size() - 1;
+        matrix.nzmax = rows.size();
+        matrix.p = starts.data();
+        matrix.i = rows.data();
+        matrix.stype = -1; // lower triangle
+        matrix.itype = CHOLMOD_INT;
+        matrix.xtype = CHOLMOD_PATTERN;
+        matrix.dtype = CHOLMOD_DOUBLE;
+        matrix.sorted = matrix.packed = 1;
+    }
+
+    void analyze(int ordering) {
+        cholmod_free_factor(&factor, &common);
+        common.method[0].ordering = ordering;
+        common.postorder = ordering != CHOLMOD_NATURAL;
+        factor = cholmod_analyze(&matrix, &common);
+        if (factor == nullptr) {
+            throw std::runtime_error("CHOLMOD analysis of " + std::to_string(matrix.nrow) +
+                                     " unknowns: " + word(common.status));
+        }
+    }
+
+    void permute(const SparsePattern& pattern) {
+        const auto* elimination = static_cast<const int*>(factor->Perm);
+        order.assign(elimination, elimination + pattern.size);
+        std::vector<int> place(order.size());
+        for (int k = 0; k < pattern.size; ++k)
+            place[order[k]] = k;
+
+        struct Entry {
+            int column, row, source;
+        };
+        std::vector<Entry> entries;
+        entries.reserve(pattern.row.size());
+        for (int c = 0; c < pattern.size; ++c) {
+            for (int k = pattern.column_start[c]; k < pattern.column_start[c + 1]; ++k) {
+                const int a = place[c], b = place[pattern.row[k]];
+                entries.push_back({std::min(a, b), std::max(a, b), k});
+            }
+        }
+        std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+            return a.column != b.column ? a.column < b.column : a.row < b.row;
+        });
+        column_start.assign(order.size() + 1, 0);
+        for (const Entry& e : entries) {
+            row.push_back(e.row);
+            source.push_back(e.source);
+            ++column_start[e.column + 1];
+        }
+        for (std::size_t c = 0; c < order.size(); ++c)
+            column_start[c + 1] += column_start[c];
+        value.resize(entries.size());
+    }
 };
 
-SparseFactor::SparseFactor(const SparsePattern& pattern) : impl_(std::make_unique<Impl>(pattern)) {
-    impl_->factor = cholmod_analyze(&impl_->matrix, &impl_->common);
-    if (impl_->factor == nullptr) {
-        throw std::runtime_error("CHOLMOD analysis of " + std::to_string(pattern.size) +
-                                 " unknowns: " + word(impl_->common.status));
-    }
+SparseFactor::SparseFactor(const SparsePattern& pattern) : impl_(std::make_unique<Impl>()) {
+    std::vector<int> starts = pattern.column_start, rows = pattern.row;
+    impl_->describe(starts, rows);
+    impl_->analyze(CHOLMOD_AMD);
+    impl_->permute(pattern);
+    impl_->describe(impl_->column_start, impl_->row);
+    impl_->analyze(CHOLMOD_NATURAL);
     impl_->matrix.xtype = CHOLMOD_REAL;
+    impl_->matrix.x = impl_->value.data();
 }
 SparseFactor::~SparseFactor() = default;
 SparseFactor::SparseFactor(SparseFactor&&) noexcept = default;
@@ -96,32 +149,40 @@ bool SparseFactor::factor(std::span<const double> values) noexcept {
     s.usable = std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
     if (!s.usable)
         return false;
+    for (std::size_t k = 0; k < s.source.size(); ++k)
+        s.value[k] = values[s.source[k]];
     stay_on_this_thread();
-    s.matrix.x = const_cast<double*>(values.data()); // CHOLMOD reads only
     s.common.status = CHOLMOD_OK;
     const int done = cholmod_factorize(&s.matrix, s.factor, &s.common);
     s.usable = done != 0 && s.common.status == CHOLMOD_OK && s.factor->minor == s.factor->n;
     return s.usable;
 }
 
-void SparseFactor::solve(std::span<double> b, int columns) noexcept {
+bool SparseFactor::solve(std::span<double> b, int columns) noexcept {
     Impl& s = *impl_;
     if (!s.usable || columns < 1)
-        return;
+        return false;
     stay_on_this_thread();
-    cholmod_dense right{};
-    right.nrow = right.d = s.factor->n;
-    right.ncol = static_cast<std::size_t>(columns);
-    right.nzmax = right.nrow * right.ncol;
-    right.x = b.data();
-    right.xtype = CHOLMOD_REAL;
-    right.dtype = CHOLMOD_DOUBLE;
-    if (cholmod_solve2(CHOLMOD_A, s.factor, &right, nullptr, &s.solution, nullptr, &s.work_y,
+    const std::size_t n = s.order.size();
+    s.right = cholmod_ensure_dense(&s.right, n, static_cast<std::size_t>(columns), n, CHOLMOD_REAL,
+                                   &s.common);
+    if (s.right == nullptr)
+        return false;
+    auto* right = static_cast<double*>(s.right->x);
+    for (int c = 0; c < columns; ++c) {
+        for (std::size_t k = 0; k < n; ++k)
+            right[c * n + k] = b[c * n + s.order[k]];
+    }
+    if (cholmod_solve2(CHOLMOD_A, s.factor, s.right, nullptr, &s.solution, nullptr, &s.work_y,
                        &s.work_e, &s.common) == 0) {
-        return;
+        return false;
     }
     const auto* x = static_cast<const double*>(s.solution->x);
-    std::copy(x, x + right.nzmax, b.begin());
+    for (int c = 0; c < columns; ++c) {
+        for (std::size_t k = 0; k < n; ++k)
+            b[c * n + s.order[k]] = x[c * n + k];
+    }
+    return true;
 }
 
 std::int64_t SparseFactor::factor_entries() const noexcept {

@@ -29,10 +29,11 @@ class SparseFactor {
     /// False if the matrix is not positive definite; the factor is then unusable.
     bool factor(std::span<const double> values) noexcept;
 
-    /// Solves A X = B in place, `columns` right-hand sides stored one after the other.
-    void solve(std::span<double> b, int columns) noexcept;
+    /// Solves A X = B in place, `columns` right-hand sides stored one after the other. False, and
+    /// `b` unchanged, without a usable factor.
+    bool solve(std::span<double> b, int columns) noexcept;
 
-    std::int64_t factor_entries() const noexcept; // nonzeros of L
+    std::int64_t factor_entries() const noexcept; // stored, explicit zeros too
 
   private:
     struct Impl;
