@@ -166,8 +166,7 @@ int gather_rows(RunningModel& model, const FreeMotion& free,
         row.tip_radius_m = tips[i].radius_m;
         const bool on_patch = place_tool(model, free, i, model.contact[i], scratch);
         slid_off += on_patch ? 0 : 1;
-        row.active = on_patch && finite(row.surface_free_m) &&
-                     finite(scratch.problem.compliance[i][i] * glm::dvec3{1.0});
+        row.active = on_patch && finite(row.surface_free_m);
     }
     for (int i = 0; i < kTools; ++i)
         for (int j = 0; j < i; ++j) {

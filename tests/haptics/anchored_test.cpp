@@ -331,22 +331,35 @@ TEST_CASE("anchored: a tool pushed over the rim of its patch lets go, and may co
 }
 
 TEST_CASE("anchored: one broken tool or patch does not silence the others") {
-    MassSpring slab;
-    const auto models = empty_models();
-    slab.publish(*models, 0, -1, 0.0);
-    models->tool[1] = models->tool[0];
-    models->tool[2] = models->tool[0];
-    models->tool[1].modes = models->tool[2].modes = 0;
-    models->tool[2].vertex[40].anchor_m.x = std::nan(""); // the middle
-    CouplingState state;
-    PoseHistory history;
-    adopt(state, *models);
-    Tips tips = one_tip({0, 0, kTipRadius_m - 1e-3});
-    tips[1].centre_m = {std::nan(""), 0, 0};
-    tips[2].centre_m = tips[0].centre_m;
-    history.push(0, tips);
-    const CouplingResult r = anchored_tick(state, {}, history, 0);
-    CHECK(r.force_n[0].z > 0.0);
-    CHECK(r.force_n[1] == glm::dvec3{0.0});
-    CHECK(r.force_n[2] == glm::dvec3{0.0});
+    const double nan = std::nan("");
+    for (const bool broken_shape : {false, true}) {
+        MassSpring slab;
+        const auto models = empty_models();
+        slab.publish(*models, 0, -1, 0.0);
+        models->modes = 3; // three bodies
+        models->lambda[2] = models->lambda[1] = models->lambda[0];
+        for (int i = 1; i < kTools; ++i) {
+            haptics::ToolPatch& patch = models->tool[i];
+            patch = models->tool[0];
+            patch.first_mode = i;
+            patch.friction = 0.3; // a stuck contact asks for no walk that could notice
+            patch.memory = {.touching = true, .x = 0.1};
+        }
+        haptics::ToolPatch& broken = models->tool[2];
+        for (int v = 0; v < broken.vertices; ++v)
+            (broken_shape ? broken.shape[v][0][0] : broken.vertex[v].anchor_m.x) = nan;
+        CouplingState state;
+        PoseHistory history;
+        adopt(state, *models);
+        for (int tick = 0; tick < 3; ++tick) {
+            Tips tips = one_tip({0, 0, kTipRadius_m - 1e-3});
+            tips[1].centre_m = {nan, 0, 0};
+            tips[2].centre_m = tips[0].centre_m;
+            history.push(tick, tips);
+            const CouplingResult r = anchored_tick(state, {}, history, tick);
+            CHECK(r.force_n[0].z > 0.0);
+            CHECK(r.force_n[1] == glm::dvec3{0.0});
+            CHECK(r.force_n[2] == glm::dvec3{0.0});
+        }
+    }
 }
