@@ -1,0 +1,24 @@
+// assets/bake/child.h
+// Runs work in a child process with a time limit: the work may hang, crash or call exit, and the
+// parent goes on. POSIX only. Called by tetrahedralise, from the main thread.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace bake {
+
+struct ChildAnswer {
+    bool done = false;
+    std::vector<std::byte> bytes; // what the work returned, if done
+    std::string reason;           // why not, if not
+    double seconds = 0.0;
+};
+
+/// `work` returns bytes, or throws std::exception whose text becomes the reason. It must not touch
+/// files or threads of the parent.
+ChildAnswer run_in_child(const std::function<std::vector<std::byte>()>& work, double limit_s);
+
+} // namespace bake

@@ -1,0 +1,65 @@
+#include "assets/bake/fit.h"
+
+#include "assets/bake/nearest.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace bake {
+namespace {
+
+std::vector<double> point_areas(const Surface& s) {
+    std::vector<double> area(s.point_m.size(), 0.0);
+    for (const auto& t : s.triangles) {
+        const double sixth = glm::length(glm::cross(s.point_m[t[1]] - s.point_m[t[0]],
+                                                    s.point_m[t[2]] - s.point_m[t[0]])) /
+                             6.0;
+        for (const auto v : t) {
+            area[v] += sixth;
+        }
+    }
+    return area;
+}
+
+std::vector<char> crease_points(const Surface& s, double crease_deg) {
+    std::vector<char> crease(s.point_m.size(), 0);
+    if (crease_deg >= 180.0) {
+        return crease;
+    }
+    const HalfEdgeMesh mesh = make_half_edges(s);
+    for (const auto e : mesh.edges()) {
+        const auto h = mesh.halfedge_handle(e, 0);
+        if (std::abs(mesh.calc_dihedral_angle(h)) > crease_deg * std::numbers::pi / 180.0) {
+            crease[mesh.from_vertex_handle(h).idx()] = 1;
+            crease[mesh.to_vertex_handle(h).idx()] = 1;
+        }
+    }
+    return crease;
+}
+
+} // namespace
+
+void fit_to_skin(const Surface& skin, int rounds, double crease_deg, Surface& coarse) {
+    const auto area = point_areas(skin);
+    const auto crease = crease_points(coarse, crease_deg);
+    for (int round = 0; round < rounds; ++round) {
+        const NearestOnSurface nearest(coarse);
+        std::vector<glm::dvec3> sum(coarse.point_m.size(), glm::dvec3{0.0});
+        std::vector<double> weight(coarse.point_m.size(), 0.0);
+        for (std::size_t i = 0; i < skin.point_m.size(); ++i) {
+            const auto near = nearest(skin.point_m[i]);
+            const auto& t = coarse.triangles[near.triangle];
+            for (int k = 0; k < 3; ++k) {
+                sum[t[k]] += area[i] * near.weight[k] * (skin.point_m[i] - near.point_m);
+                weight[t[k]] += area[i] * near.weight[k];
+            }
+        }
+        for (std::size_t v = 0; v < coarse.point_m.size(); ++v) {
+            if (weight[v] > 0.0 && !crease[v]) {
+                coarse.point_m[v] += sum[v] / weight[v];
+            }
+        }
+    }
+}
+
+} // namespace bake

@@ -1,0 +1,64 @@
+// assets/bake/recipe.h
+// What to bake, as a TOML file says it. Called by bake's main and by tests; text in, struct out.
+#pragma once
+
+#include "assets/bake/shape.h"
+#include "tissue/material/elastic.h"
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <variant>
+
+namespace bake {
+
+/// Bad input: the message names file, line, key and value, and what would be accepted.
+struct RecipeError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// Nodes in any of these are fixed in place.
+struct AnchorSphere {
+    glm::dvec3 centre_mm{0.0};
+    double radius_mm = 0.0;
+};
+struct AnchorBox {
+    glm::dvec3 low_mm{0.0}, high_mm{0.0};
+};
+
+/// A place with shorter edges: edge_mm up to radius_mm, then growing by `growth` per unit.
+struct FineSpot {
+    glm::dvec3 centre_mm{0.0};
+    double radius_mm = 0.0, edge_mm = 0.0, growth = 0.5;
+};
+
+/// Box [0, size] for tests on a block of known answers.
+struct BoxShape {
+    glm::dvec3 size_mm{0.0};
+    std::optional<std::array<int, 3>> cells; // regular cells instead of TetGen
+    bool skin_on_top_only = true;
+};
+
+enum class Kind { liver, wall, box };
+
+struct Recipe {
+    std::string name;
+    Kind kind = Kind::liver;
+    double edge_mm = 13.0; // of the tetrahedra
+    double skin_mm = 4.0;  // of the surface that is touched and drawn
+    double tip_radius_max_mm = 3.0;
+    double quality_ratio = 1.2;         // TetGen: circumradius over shortest edge
+    double quality_dihedral_deg = 15.0; // TetGen: smallest dihedral angle
+    std::variant<LobedShape, VaultShape, BoxShape> shape;
+    std::vector<AnchorSphere> anchor_spheres;
+    std::vector<AnchorBox> anchor_boxes;
+    std::vector<FineSpot> fine;
+    tissue::Material material;
+    std::uint64_t text_hash = 0; // FNV-1a of the text
+};
+
+/// Throws RecipeError.
+Recipe parse_recipe(const std::string& text, const std::string& file_name);
+
+} // namespace bake

@@ -1,0 +1,258 @@
+#include "tissue/mesh/baked_organ.h"
+
+#include <algorithm>
+#include <cmath>
+#include <doctest/doctest.h>
+#include <limits>
+#include <rapidcheck.h>
+#include <stdexcept>
+#include <string_view>
+
+namespace {
+
+constexpr std::size_t kHashSize = 8;
+
+// One tetrahedron with its four faces as skin, rows of one or two nodes.
+tissue::BakedOrgan small_organ() {
+    tissue::BakedOrgan o;
+    o.name = "probe";
+    o.mesh.rest_m = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}};
+    o.mesh.tets = {{0, 1, 2, 3}};
+    o.anchored = {1, 0, 1, 1};
+    o.surface.rest_m = o.mesh.rest_m;
+    o.surface.triangles = tissue::boundary_triangles(o.mesh);
+    o.surface.neighbours = tissue::triangle_neighbours(o.surface.triangles);
+    o.surface.row_start = {0, 1, 3, 4, 5};
+    o.surface.row_node = {0, 1, 2, 2, 3};
+    o.surface.row_weight = {1.0, 0.25, 0.75, 1.0, 1.0};
+    o.surface.offset_m = {{0, 0, 1e-3}, {0, 1e-3, 0}, {1e-3, 0, 0}, {-1e-3, 0, 0}};
+    o.surface.frame_node = {{0, 1, 2}, {1, 2, 3}, {2, 3, 0}, {3, 0, 1}};
+    o.surface.footprint_radius_m = {4e-3, 5e-3, 6e-3, 7e-3};
+    o.surface.thickness_m = {1e-2, 2e-2, 3e-2, 4e-2};
+    o.surface.mesh_term_n_m = {1, 2, 3, 4};
+    o.surface.mesh_term_t_m = {5, 6, 7, 8};
+    o.material.young_pa = 1234.5;
+    o.material.source = "made up";
+    o.recipe_hash = 0x0123456789ABCDEFULL;
+    return o;
+}
+
+// FNV-1a, 64 bit (Fowler, Noll & Vo 1991), written a second time.
+std::uint64_t fnv(std::span<const std::byte> bytes) {
+    std::uint64_t hash = 14695981039346656037ULL;
+    for (const auto b : bytes) {
+        hash ^= std::to_integer<std::uint64_t>(b);
+        hash *= 1099511628211ULL;
+    }
+    return hash;
+}
+
+void sign(std::vector<std::byte>& bytes) {
+    const std::uint64_t hash = fnv(std::span(bytes).first(bytes.size() - kHashSize));
+    for (std::size_t i = 0; i < kHashSize; ++i) {
+        bytes[bytes.size() - kHashSize + i] = static_cast<std::byte>(hash >> (8 * i) & 0xFF);
+    }
+}
+
+std::string refusal(const std::vector<std::byte>& bytes) {
+    try {
+        tissue::read_organ(bytes);
+    } catch (const std::invalid_argument& e) {
+        return e.what();
+    }
+    return "";
+}
+
+bool all_below(const auto& lists, std::size_t limit) {
+    return std::all_of(lists.begin(), lists.end(), [&](const auto& list) {
+        return std::all_of(list.begin(), list.end(), [&](auto i) { return i < limit; });
+    });
+}
+
+// What a reader of the organ relies on, stated apart from the code that checks it.
+bool safe_to_use(const tissue::BakedOrgan& o) {
+    const auto& s = o.surface;
+    const std::size_t nodes = o.mesh.rest_m.size(), vertices = s.rest_m.size();
+    bool good = all_below(o.mesh.tets, nodes) && all_below(s.triangles, vertices) &&
+                all_below(s.frame_node, nodes) && s.neighbours.size() == s.triangles.size() &&
+                o.anchored.size() == nodes;
+    for (const auto& n : s.neighbours) {
+        good = good && std::all_of(n.begin(), n.end(), [&](std::int32_t t) {
+                   return t >= -1 && t < static_cast<std::int32_t>(s.triangles.size());
+               });
+    }
+    if (o.rigid) {
+        return good && nodes == 0 && s.row_start.empty() && s.row_node.empty();
+    }
+    good = good && s.row_start.size() == vertices + 1 && s.row_start.front() == 0 &&
+           s.row_start.back() == s.row_node.size() && s.row_weight.size() == s.row_node.size() &&
+           std::is_sorted(s.row_start.begin(), s.row_start.end()) &&
+           std::all_of(s.row_node.begin(), s.row_node.end(), [&](auto n) { return n < nodes; });
+    for (const auto* list :
+         {&s.footprint_radius_m, &s.thickness_m, &s.mesh_term_n_m, &s.mesh_term_t_m}) {
+        good = good && list->size() == vertices &&
+               std::all_of(list->begin(), list->end(), [](double x) { return std::isfinite(x); });
+    }
+    return good && s.offset_m.size() == vertices && s.frame_node.size() == vertices;
+}
+
+} // namespace
+
+TEST_CASE("baked organ: every field survives writing and reading") {
+    const auto organ = small_organ();
+    const auto read = tissue::read_organ(tissue::write_organ(organ));
+    CHECK(read.name == organ.name);
+    CHECK(read.rigid == organ.rigid);
+    CHECK(read.mesh.rest_m == organ.mesh.rest_m);
+    CHECK(read.mesh.tets == organ.mesh.tets);
+    CHECK(read.anchored == organ.anchored);
+    CHECK(read.surface.rest_m == organ.surface.rest_m);
+    CHECK(read.surface.triangles == organ.surface.triangles);
+    CHECK(read.surface.neighbours == organ.surface.neighbours);
+    CHECK(read.surface.row_start == organ.surface.row_start);
+    CHECK(read.surface.row_node == organ.surface.row_node);
+    CHECK(read.surface.row_weight == organ.surface.row_weight);
+    CHECK(read.surface.offset_m == organ.surface.offset_m);
+    CHECK(read.surface.frame_node == organ.surface.frame_node);
+    CHECK(read.surface.footprint_radius_m == organ.surface.footprint_radius_m);
+    CHECK(read.surface.thickness_m == organ.surface.thickness_m);
+    CHECK(read.surface.mesh_term_n_m == organ.surface.mesh_term_n_m);
+    CHECK(read.surface.mesh_term_t_m == organ.surface.mesh_term_t_m);
+    CHECK(read.material.young_pa == organ.material.young_pa);
+    CHECK(read.material.poisson == organ.material.poisson);
+    CHECK(read.material.density_kgpm3 == organ.material.density_kgpm3);
+    CHECK(read.material.damping_mass_1ps == organ.material.damping_mass_1ps);
+    CHECK(read.material.damping_stiffness_s == organ.material.damping_stiffness_s);
+    CHECK(read.material.friction == organ.material.friction);
+    CHECK(read.material.source == organ.material.source);
+    CHECK(read.tip_radius_max_m == organ.tip_radius_max_m);
+    CHECK(read.recipe_hash == organ.recipe_hash);
+}
+
+TEST_CASE("baked organ: the file is little endian and ends with the FNV-1a hash of the rest") {
+    const auto bytes = tissue::write_organ(small_organ());
+    std::string head;
+    for (std::size_t i = 0; i < 8; ++i) {
+        head.push_back(static_cast<char>(bytes[i]));
+    }
+    CHECK(head == "TROCORGN");
+    CHECK(bytes[8] == std::byte{1}); // version 1
+    CHECK(bytes[11] == std::byte{0});
+    CHECK(bytes[12] == std::byte{5}); // length of the name
+    CHECK(bytes[20] == std::byte{'p'});
+    auto again = bytes;
+    sign(again);
+    CHECK(again == bytes);
+}
+
+TEST_CASE("baked organ: every shortened file is refused") {
+    const auto bytes = tissue::write_organ(small_organ());
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+        CHECK_THROWS_AS(tissue::read_organ(std::span(bytes).first(size)), std::invalid_argument);
+    }
+}
+
+TEST_CASE("baked organ: a shortened file with a right checksum is refused") {
+    const auto bytes = tissue::write_organ(small_organ());
+    for (std::size_t size = 20; size < bytes.size(); ++size) {
+        auto cut = bytes;
+        cut.resize(size);
+        sign(cut);
+        CHECK_THROWS_AS(tissue::read_organ(cut), std::invalid_argument);
+    }
+}
+
+TEST_CASE("baked organ: every single wrong bit is refused") {
+    auto bytes = tissue::write_organ(small_organ());
+    for (auto& byte : bytes) {
+        for (unsigned bit = 0; bit < 8; ++bit) {
+            byte ^= static_cast<std::byte>(1U << bit);
+            CHECK_THROWS_AS(tissue::read_organ(bytes), std::invalid_argument);
+            byte ^= static_cast<std::byte>(1U << bit);
+        }
+    }
+}
+
+TEST_CASE("baked organ: damage behind a right checksum is refused or harmless") {
+    const auto good = tissue::write_organ(small_organ());
+    CHECK(rc::check([&good] {
+        auto bytes = good;
+        const int changes = *rc::gen::inRange(1, 5);
+        for (int i = 0; i < changes; ++i) {
+            const auto at = *rc::gen::inRange<std::size_t>(12, bytes.size() - kHashSize);
+            const int value = *rc::gen::element(0, 1, 2, 3, 5, 0x7F, 0x80, 0xF0, 0xFF);
+            bytes[at] = static_cast<std::byte>(value);
+        }
+        sign(bytes);
+        try {
+            const auto organ = tissue::read_organ(bytes);
+            RC_ASSERT(safe_to_use(organ));
+            RC_ASSERT(tissue::write_organ(organ) == bytes);
+        } catch (const std::invalid_argument&) {
+            RC_TAG("refused");
+        }
+    }));
+}
+
+TEST_CASE("baked organ: arbitrary bytes are refused") {
+    CHECK(rc::check([](const std::vector<std::uint8_t>& raw) {
+        std::vector<std::byte> bytes;
+        for (const auto b : raw) {
+            bytes.push_back(static_cast<std::byte>(b));
+        }
+        RC_ASSERT_THROWS_AS(tissue::read_organ(bytes), std::invalid_argument);
+    }));
+}
+
+TEST_CASE("baked organ: a list longer than the file is refused before memory is asked for") {
+    auto bytes = tissue::write_organ(small_organ());
+    for (std::size_t i = 12; i < 20; ++i) { // length of the name
+        bytes[i] = std::byte{0xFF};
+    }
+    sign(bytes);
+    CHECK(refusal(bytes).find("byte 12: a list of 18446744073709551615 items") !=
+          std::string::npos);
+}
+
+TEST_CASE("baked organ: an index out of range is named with its byte") {
+    auto organ = small_organ();
+    organ.mesh.tets[0][2] = 4; // there are nodes 0 to 3
+    const auto bytes = tissue::write_organ(organ);
+    const std::string why = refusal(bytes);
+    CHECK(why.find("node of a tetrahedron 4 is out of range") != std::string::npos);
+
+    // the byte it names holds the 4
+    const auto at = static_cast<std::size_t>(std::stoul(why.substr(why.find("byte ") + 5)));
+    CHECK(bytes[at] == std::byte{4});
+}
+
+TEST_CASE("baked organ: a number that is not finite is refused") {
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        auto organ = small_organ();
+        organ.surface.thickness_m[1] = bad;
+        CHECK(refusal(tissue::write_organ(organ)).find("not a finite number") != std::string::npos);
+    }
+}
+
+TEST_CASE("baked organ: a file of a newer version is refused by its number") {
+    auto bytes = tissue::write_organ(small_organ());
+    bytes[8] = std::byte{2};
+    sign(bytes);
+    CHECK(refusal(bytes).find("version 2, this build reads version 1") != std::string::npos);
+}
+
+TEST_CASE("baked organ: a rigid body has a surface and nothing else") {
+    tissue::BakedOrgan wall;
+    wall.rigid = true;
+    wall.surface.rest_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    wall.surface.triangles = {{0, 1, 2}};
+    wall.surface.neighbours = tissue::triangle_neighbours(wall.surface.triangles);
+    const auto read = tissue::read_organ(tissue::write_organ(wall));
+    CHECK(read.rigid);
+    CHECK(read.surface.triangles == wall.surface.triangles);
+
+    wall.mesh.rest_m = {{0, 0, 0}};
+    wall.anchored = {0};
+    CHECK(refusal(tissue::write_organ(wall)).find("rigid") != std::string::npos);
+}

@@ -1,0 +1,300 @@
+// The file format of a baked organ, version 1. All little endian, doubles as IEEE 754 bits:
+//   magic "TROCORGN", u32 version, then the fields of BakedOrgan in the order of write_fields(),
+//   each list as u64 count and its items, then u64 FNV-1a of everything before it.
+// One list of fields serves both directions, so that they cannot drift apart.
+#include "tissue/mesh/baked_organ.h"
+
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <cstring>
+#include <stdexcept>
+
+namespace tissue {
+namespace {
+
+constexpr std::string_view kMagic = "TROCORGN";
+constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kHashSize = 8;
+
+[[noreturn]] void fail(const std::string& what, std::size_t byte) {
+    throw std::invalid_argument("baked organ, byte " + std::to_string(byte) + ": " + what);
+}
+
+std::uint64_t fnv1a(std::span<const std::byte> bytes) {
+    std::uint64_t hash = 0xCBF29CE484222325ULL;
+    for (const std::byte b : bytes) {
+        hash = (hash ^ static_cast<std::uint64_t>(b)) * 0x100000001B3ULL;
+    }
+    return hash;
+}
+
+class Writer {
+  public:
+    std::vector<std::byte> bytes;
+
+    template <std::unsigned_integral T> void integer(T value) {
+        for (std::size_t i = 0; i < sizeof(T); ++i) {
+            bytes.push_back(static_cast<std::byte>(value >> (8 * i) & 0xFF));
+        }
+    }
+    void item(std::uint8_t v) { integer(v); }
+    void item(std::uint32_t v) { integer(v); }
+    void item(std::uint64_t v) { integer(v); }
+    void item(std::int32_t v) { integer(std::bit_cast<std::uint32_t>(v)); }
+    void item(double v) { integer(std::bit_cast<std::uint64_t>(v)); }
+    void item(bool v) { integer(static_cast<std::uint8_t>(v ? 1 : 0)); }
+    void item(const glm::dvec3& v) { item(v.x), item(v.y), item(v.z); }
+    template <class T, std::size_t N> void item(const std::array<T, N>& a) {
+        for (const auto& v : a) {
+            item(v);
+        }
+    }
+    template <class T> void list(const std::vector<T>& v) {
+        integer(static_cast<std::uint64_t>(v.size()));
+        for (const auto& one : v) {
+            item(one);
+        }
+    }
+    void list(const std::string& s) {
+        integer(static_cast<std::uint64_t>(s.size()));
+        for (const char c : s) {
+            integer(static_cast<std::uint8_t>(c));
+        }
+    }
+};
+
+class Reader {
+  public:
+    Reader(std::span<const std::byte> bytes, std::size_t at) : bytes_(bytes), at_(at) {}
+
+    [[nodiscard]] std::size_t at() const { return at_; }
+
+    template <std::unsigned_integral T> T integer() {
+        need(sizeof(T));
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; i < sizeof(T); ++i) {
+            value |= static_cast<std::uint64_t>(bytes_[at_ + i]) << (8 * i);
+        }
+        at_ += sizeof(T);
+        return static_cast<T>(value);
+    }
+    void item(std::uint8_t& v) { v = integer<std::uint8_t>(); }
+    void item(std::uint32_t& v) { v = integer<std::uint32_t>(); }
+    void item(std::uint64_t& v) { v = integer<std::uint64_t>(); }
+    void item(std::int32_t& v) { v = std::bit_cast<std::int32_t>(integer<std::uint32_t>()); }
+    void item(double& v) {
+        const std::size_t start = at_;
+        v = std::bit_cast<double>(integer<std::uint64_t>());
+        if (!std::isfinite(v)) {
+            fail("not a finite number", start);
+        }
+    }
+    void item(bool& v) {
+        const auto byte = integer<std::uint8_t>();
+        if (byte > 1) {
+            fail("neither 0 nor 1", at_ - 1);
+        }
+        v = byte == 1;
+    }
+    void item(glm::dvec3& v) { item(v.x), item(v.y), item(v.z); }
+    template <class T, std::size_t N> void item(std::array<T, N>& a) {
+        for (auto& v : a) {
+            item(v);
+        }
+    }
+    template <class T> void list(std::vector<T>& v) {
+        v.resize(count(sizeof(T)));
+        for (auto& one : v) {
+            item(one);
+        }
+    }
+    void list(std::string& s) {
+        s.resize(count(1));
+        for (char& c : s) {
+            c = static_cast<char>(integer<std::uint8_t>());
+        }
+    }
+
+  private:
+    void need(std::size_t size) const {
+        if (bytes_.size() - at_ < size) {
+            fail("the file ends here, " + std::to_string(size) + " bytes expected", at_);
+        }
+    }
+    /// A count that the bytes left can hold, so that a lie cannot ask for all memory.
+    std::size_t count(std::size_t item_size) {
+        const std::size_t start = at_;
+        const auto n = integer<std::uint64_t>();
+        if (n > (bytes_.size() - at_) / item_size) {
+            fail("a list of " + std::to_string(n) + " items does not fit into the file", start);
+        }
+        return static_cast<std::size_t>(n);
+    }
+
+    std::span<const std::byte> bytes_;
+    std::size_t at_;
+};
+
+/// `start` (may be null) receives where each list begins, for messages.
+struct ListStarts {
+    std::size_t anchored = 0, tets = 0, triangles = 0, neighbours = 0, row_start = 0, row_node = 0,
+                frame_node = 0, sizes = 0;
+};
+
+/// The order of the file. `Organ` is const for a Writer.
+template <class Stream, class Organ> ListStarts fields(Stream& s, Organ& o) {
+    ListStarts at;
+    const auto here = [&] {
+        if constexpr (std::same_as<Stream, Reader>) {
+            return s.at();
+        } else {
+            return s.bytes.size();
+        }
+    };
+    s.list(o.name);
+    s.item(o.rigid);
+    s.item(o.tip_radius_max_m);
+    s.item(o.recipe_hash);
+    s.item(o.material.young_pa);
+    s.item(o.material.poisson);
+    s.item(o.material.density_kgpm3);
+    s.item(o.material.damping_mass_1ps);
+    s.item(o.material.damping_stiffness_s);
+    s.item(o.material.friction);
+    s.list(o.material.source);
+    s.list(o.mesh.rest_m);
+    at.tets = here();
+    s.list(o.mesh.tets);
+    at.anchored = here();
+    s.list(o.anchored);
+    s.list(o.surface.rest_m);
+    at.triangles = here();
+    s.list(o.surface.triangles);
+    at.neighbours = here();
+    s.list(o.surface.neighbours);
+    at.row_start = here();
+    s.list(o.surface.row_start);
+    at.row_node = here();
+    s.list(o.surface.row_node);
+    s.list(o.surface.row_weight);
+    s.list(o.surface.offset_m);
+    at.frame_node = here();
+    s.list(o.surface.frame_node);
+    at.sizes = here();
+    s.list(o.surface.footprint_radius_m);
+    s.list(o.surface.thickness_m);
+    s.list(o.surface.mesh_term_n_m);
+    s.list(o.surface.mesh_term_t_m);
+    return at;
+}
+
+template <class Lists, class Limit>
+void check_indices(const Lists& lists, Limit low, Limit high, const char* what, std::size_t start) {
+    std::size_t byte = start + 8; // after the count
+    for (const auto& list : lists) {
+        for (const auto index : list) {
+            if (index < low || index >= high) {
+                fail(std::string(what) + " " + std::to_string(index) + " is out of range", byte);
+            }
+            byte += sizeof(index);
+        }
+    }
+}
+
+void check_size(std::size_t size, std::size_t expected, const char* what, std::size_t byte) {
+    if (size != expected) {
+        fail(std::string(what) + ": " + std::to_string(size) + " items, " +
+                 std::to_string(expected) + " expected",
+             byte);
+    }
+}
+
+void check_rows(const ContactSurface& s, std::uint32_t nodes, const ListStarts& at) {
+    for (std::size_t v = 0; v < s.row_start.size(); ++v) {
+        const bool good = v == 0 ? s.row_start[v] == 0 : s.row_start[v] >= s.row_start[v - 1];
+        if (!good || s.row_start[v] > s.row_node.size()) {
+            fail("rows out of order", at.row_start + 8 + 4 * v);
+        }
+    }
+    if (!s.row_start.empty()) {
+        check_size(s.row_node.size(), s.row_start.back(), "nodes of the rows", at.row_node);
+    }
+    check_indices(std::span(&s.row_node, 1), 0U, nodes, "node of a row", at.row_node);
+    check_indices(s.frame_node, 0U, nodes, "node of a frame", at.frame_node);
+}
+
+/// Everything that code reading the organ indexes with or relies on.
+void check_organ(const BakedOrgan& o, const ListStarts& at) {
+    const auto nodes = static_cast<std::uint32_t>(o.mesh.rest_m.size());
+    const ContactSurface& s = o.surface;
+    const auto vertices = static_cast<std::uint32_t>(s.rest_m.size());
+    check_indices(o.mesh.tets, 0U, nodes, "node of a tetrahedron", at.tets);
+    check_size(o.anchored.size(), nodes, "anchored", at.anchored);
+    check_indices(std::span(&o.anchored, 1), std::uint8_t{0}, std::uint8_t{2}, "anchored",
+                  at.anchored);
+    check_indices(s.triangles, 0U, vertices, "vertex of a triangle", at.triangles);
+    check_size(s.neighbours.size(), s.triangles.size(), "neighbours", at.neighbours);
+    check_indices(s.neighbours, -1, static_cast<std::int32_t>(s.triangles.size()),
+                  "neighbouring triangle", at.neighbours);
+
+    const std::size_t rows = o.rigid ? 0 : vertices;
+    if (o.rigid) {
+        check_size(nodes, 0, "nodes of a rigid body", at.tets);
+    }
+    check_size(s.row_start.size(), o.rigid ? 0 : rows + 1, "starts of the rows", at.row_start);
+    check_size(s.row_weight.size(), s.row_node.size(), "weights of the rows", at.row_node);
+    check_size(s.offset_m.size(), rows, "offsets", at.row_node);
+    check_size(s.frame_node.size(), rows, "frames", at.frame_node);
+    check_size(s.footprint_radius_m.size(), rows, "footprint radii", at.sizes);
+    check_size(s.thickness_m.size(), rows, "thicknesses", at.sizes);
+    check_size(s.mesh_term_n_m.size(), rows, "normal mesh terms", at.sizes);
+    check_size(s.mesh_term_t_m.size(), rows, "tangential mesh terms", at.sizes);
+    check_rows(s, nodes, at);
+}
+
+} // namespace
+
+std::vector<std::byte> write_organ(const BakedOrgan& organ) {
+    Writer writer;
+    for (const char c : kMagic) {
+        writer.integer(static_cast<std::uint8_t>(c));
+    }
+    writer.integer(kVersion);
+    fields(writer, organ);
+    writer.integer(fnv1a(writer.bytes));
+    return std::move(writer.bytes);
+}
+
+BakedOrgan read_organ(std::span<const std::byte> bytes) {
+    Reader head(bytes, 0);
+    for (const char c : kMagic) {
+        if (head.integer<std::uint8_t>() != static_cast<std::uint8_t>(c)) {
+            fail("not a baked organ", head.at() - 1);
+        }
+    }
+    const auto version = head.integer<std::uint32_t>();
+    if (version != kVersion) {
+        fail("version " + std::to_string(version) + ", this build reads version " +
+                 std::to_string(kVersion),
+             kMagic.size());
+    }
+    if (bytes.size() - head.at() < kHashSize) {
+        fail("the file ends here, a checksum expected", bytes.size());
+    }
+    const std::size_t end = bytes.size() - kHashSize;
+    if (Reader(bytes, end).integer<std::uint64_t>() != fnv1a(bytes.first(end))) {
+        fail("wrong checksum: the file is damaged or cut short", end);
+    }
+
+    Reader body(bytes.first(end), head.at());
+    BakedOrgan organ;
+    const ListStarts at = fields(body, organ);
+    if (body.at() != end) {
+        fail("more bytes than the organ has", body.at());
+    }
+    check_organ(organ, at);
+    return organ;
+}
+
+} // namespace tissue
