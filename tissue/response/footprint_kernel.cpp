@@ -2,8 +2,10 @@
 // The sample points of a contact kernel on a body. Bake time, any thread.
 #include "tissue/response/footprint_kernel.h"
 
+#include "tissue/response/layer_theory.h"
+
 #include <algorithm>
-#include <array>
+
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
@@ -52,29 +54,25 @@ glm::dmat3 tangent_frame(const dvec3& normal) {
     return {tangent, glm::cross(normal, tangent), normal};
 }
 
-// int f k dA over u = rho^2 is int f 2 (1-u) du: three Gauss points in u.
+// int f k dA over u = rho^2 is int f 2 (1-u) du: Gauss points in u.
 std::vector<KernelSample> kernel_samples(const BoundaryTree& tree, const dvec3& centre_m,
-                                         const dvec3& normal, double radius_m, double reach_m) {
-    struct Ring {
-        double u, weight;
-        int points;
-        double turn; // of the first point, in steps
-    };
-    const double gauss = 0.5 * std::sqrt(0.6);
-    const std::array<Ring, 3> rings{{{0.5 - gauss, (1.0 + 2.0 * gauss) * 5.0 / 18.0, 6, 0.0},
-                                     {0.5, 8.0 / 18.0, 12, 0.5},
-                                     {0.5 + gauss, (1.0 - 2.0 * gauss) * 5.0 / 18.0, 18, 0.0}}};
+                                         const dvec3& normal, double radius_m, double reach_m,
+                                         int rings) {
+    const QuadratureRule rule = gauss_legendre(rings); // on [-1, 1]
     const glm::dmat3 frame = tangent_frame(normal);
     std::vector<KernelSample> samples;
     double kept = 0.0;
-    for (const Ring& ring : rings) {
-        for (int k = 0; k < ring.points; ++k) {
-            const double angle = 2.0 * pi * (k + ring.turn) / ring.points;
+    for (int ring = 0; ring < rings; ++ring) {
+        const double u = 0.5 * (1.0 + rule.point[ring]);
+        const int points = 6 * (ring + 1);
+        const double share = rule.weight[ring] * (1.0 - u) / points;
+        for (int k = 0; k < points; ++k) {
+            const double angle = 2.0 * pi * (k + (ring % 2 == 1 ? 0.5 : 0.0)) / points;
             const dvec3 point =
-                centre_m + radius_m * std::sqrt(ring.u) *
-                               (std::cos(angle) * frame[0] + std::sin(angle) * frame[1]);
+                centre_m +
+                radius_m * std::sqrt(u) * (std::cos(angle) * frame[0] + std::sin(angle) * frame[1]);
             if (const auto at = carry(tree, point, normal, reach_m)) {
-                samples.push_back({*at, ring.weight / ring.points});
+                samples.push_back({*at, share});
                 kept += samples.back().share;
             }
         }

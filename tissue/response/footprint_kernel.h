@@ -17,11 +17,14 @@ struct KernelSample {
     double share;
 };
 
-/// 36 points on 3 rings around `centre_m` in the plane across `normal` (unit), carried along the
-/// normal onto the boundary where it faces the same way. Points off the body are left out; the
-/// shares of the rest sum to 1. If none is left: the nearest boundary point.
+inline constexpr int kKernelRings = 3;
+
+/// Points around `centre_m` in the plane across `normal` (unit), 6, 12, 18 .. on the rings, carried
+/// along the normal onto the boundary where it faces the same way. Points off the body are left
+/// out; the shares of the rest sum to 1. If none is left: the nearest boundary point.
 std::vector<KernelSample> kernel_samples(const BoundaryTree& tree, const glm::dvec3& centre_m,
-                                         const glm::dvec3& normal, double radius_m, double reach_m);
+                                         const glm::dvec3& normal, double radius_m, double reach_m,
+                                         int rings = kKernelRings);
 
 /// r = max(1.3175 a, min(c h, s)), s: distance in the tangent plane at which the body ends or has
 /// turned away. `size_m` is h here.
