@@ -23,7 +23,8 @@ double force_at(const haptics::LocalLaw& law, double compliance_mpn, double dept
                       .tip_radius_m = radius_m,
                       .friction = 0.0,
                       .law = law};
-    for (auto& line : problem.compliance) line.fill(glm::dmat3{0.0});
+    for (auto& line : problem.compliance)
+        line.fill(glm::dmat3{0.0});
     problem.compliance[0][0] = glm::dmat3{compliance_mpn};
     std::array<haptics::ContactMemory, haptics::kTools> memory{};
     return haptics::solve_contact(problem, memory).force_n[0].z;
@@ -33,19 +34,21 @@ bool anchored_below(const Body& body, const tissue::Triangle& corners) {
     const tissue::ContactSurface& skin = body.organ->surface;
     for (const std::uint32_t v : corners) {
         for (std::uint32_t k = skin.row_start[v]; k < skin.row_start[v + 1]; ++k) {
-            if (body.organ->anchored[skin.row_node[k]]) return true;
+            if (body.organ->anchored[skin.row_node[k]])
+                return true;
         }
     }
     return false;
 }
 
-}  // namespace
+} // namespace
 
 Indenter::Indenter(std::shared_ptr<const tissue::BakedOrgan> organ,
                    const tissue::Material& material, double tip_radius_m)
     : body_(make_body(std::move(organ), material, tip_radius_m,
                       std::numeric_limits<double>::infinity())) {
-    if (!body_.soft) throw std::invalid_argument("a rigid organ cannot be indented");
+    if (!body_.soft)
+        throw std::invalid_argument("a rigid organ cannot be indented");
 }
 
 IndentPoint Indenter::press(const glm::dvec3& near_m, std::span<const double> depth_m) {
@@ -88,13 +91,15 @@ std::vector<glm::dvec3> random_places(const Body& body, int count, std::uint64_t
     double sum = 0.0;
     for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
         const tissue::Triangle& c = skin.triangles[t];
-        if (anchored_below(body, c)) continue;
+        if (anchored_below(body, c))
+            continue;
         sum += glm::length(glm::cross(skin.rest_m[c[1]] - skin.rest_m[c[0]],
                                       skin.rest_m[c[2]] - skin.rest_m[c[0]]));
         area_sum.push_back(sum);
         triangle.push_back(t);
     }
-    if (triangle.empty()) throw std::invalid_argument("no skin is free of anchored tissue");
+    if (triangle.empty())
+        throw std::invalid_argument("no skin is free of anchored tissue");
     std::mt19937_64 random(seed);
     const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1.0p-53; };
     std::vector<glm::dvec3> places;
@@ -126,4 +131,4 @@ std::vector<glm::dvec3> slide_places(const Body& body, const glm::dvec3& from_m,
     return places;
 }
 
-}  // namespace sim
+} // namespace sim

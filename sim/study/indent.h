@@ -11,15 +11,15 @@ namespace sim {
 
 struct IndentPoint {
     glm::dvec3 place_m{0.0}, normal{0.0};
-    double mesh_mpn = 0.0;          // H K^-1 H^T, normal
-    double tangential_mpn = 0.0;    // the same across, mean of two directions
-    double linear_mpn = 0.0;        // linear part of the sub-grid law (mesh term less kernel)
-    std::vector<double> force_n;    // at each depth asked for
+    double mesh_mpn = 0.0;       // H K^-1 H^T, normal
+    double tangential_mpn = 0.0; // the same across, mean of two directions
+    double linear_mpn = 0.0;     // linear part of the sub-grid law (mesh term less kernel)
+    std::vector<double> force_n; // at each depth asked for
 };
 
 /// Statics of one organ: its tangent at rest, factored once.
 class Indenter {
-public:
+  public:
     Indenter(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Material& material,
              double tip_radius_m);
 
@@ -28,7 +28,7 @@ public:
     IndentPoint press(const glm::dvec3& near_m, std::span<const double> depth_m);
     const Body& body() const { return body_; }
 
-private:
+  private:
     Body body_;
 };
 
@@ -40,4 +40,4 @@ std::vector<glm::dvec3> random_places(const Body& body, int count, std::uint64_t
 std::vector<glm::dvec3> slide_places(const Body& body, const glm::dvec3& from_m,
                                      const glm::dvec3& heading, double length_m, int steps);
 
-}  // namespace sim
+} // namespace sim
