@@ -205,6 +205,8 @@ void multiply(const SparsePattern& pattern, std::span<const double> values,
     }
 }
 
-std::string blas_name() { return openblas_get_config(); }
+std::string blas_name() {
+    return openblas_get_config();
+}
 
 } // namespace tissue
