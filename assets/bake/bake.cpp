@@ -3,7 +3,7 @@
 #include "assets/bake/fit.h"
 #include "assets/bake/nearest.h"
 #include "assets/bake/remesh.h"
-#include "tissue/response/footprint.h"
+#include "tissue/response/mesh_term.h"
 
 #include <algorithm>
 #include <bit>
@@ -234,6 +234,9 @@ Baked bake(const Recipe& recipe, const BakeOptions& options) {
     organ.surface.neighbours = tissue::triangle_neighbours(surfaces.skin.triangles);
     const tissue::FootprintOptions footprint{.tip_radius_max_m = organ.tip_radius_max_m};
     tissue::make_footprints(organ.mesh, organ.anchored, footprint, organ.surface);
+    clock.begin("mesh terms");
+    tissue::make_mesh_terms(organ.mesh, organ.material.poisson, organ.anchored, footprint,
+                            organ.surface, options.mesh_term_progress);
     clock.end();
     return baked;
 }
