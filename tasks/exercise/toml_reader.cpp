@@ -123,6 +123,10 @@ bool TomlTable::has(std::string_view key) const {
     return node_->value.contains(std::string(key));
 }
 
+std::string TomlTable::where() const {
+    return node_->file + ":" + std::to_string(node_->line);
+}
+
 double TomlTable::number(std::string_view key, Range range, std::optional<double> fallback) const {
     const std::string accepted = "a number from " + range_text(range);
     if (!has(key)) {

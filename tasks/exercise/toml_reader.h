@@ -27,6 +27,7 @@ class TomlTable {
     /// Any other key in this table is an error; the message lists these.
     void accept_only(std::initializer_list<std::string_view> keys) const;
     bool has(std::string_view key) const;
+    std::string where() const; // "file:line" of the table
 
     // The value of `key`; without it the fallback, or an error if there is none. Numbers may be
     // written as integers. Out of range and not finite are errors.
