@@ -1,6 +1,7 @@
 #include "sim/bridge/answer_to_local_model.h"
 
 #include "haptics/contact/surface_walk.h"
+#include "tissue/response/mode_shapes.h"
 
 #include <algorithm>
 #include <glm/geometric.hpp>
@@ -44,6 +45,7 @@ int add_modes(Body& body, std::span<const tissue::BasisContact> contacts,
     SoftBody& soft = *body.soft;
     tissue::compute_contact_basis(soft.model, body.organ->surface, soft.state, soft.system,
                                   contacts, soft.basis);
+    tissue::turn_shapes(soft.basis, soft.model.unknowns, soft.shape_by_unknown);
     const int first = local.modes;
     const int count = std::min(soft.basis.modes, haptics::kMaxModes - first);
     for (int m = 0; m < count; ++m) {
@@ -76,14 +78,10 @@ void fill_patch(const Body& body, const tissue::Patch& patch, haptics::ToolPatch
     if (!body.soft)
         return;
     const SoftBody& soft = *body.soft;
-    const std::size_t n = static_cast<std::size_t>(soft.model.unknowns);
     for (int v = 0; v < out.vertices; ++v) {
-        for (int m = 0; m < out.modes; ++m) {
-            const glm::dvec3 moved = tissue::vertex_value(
-                soft.model, skin, patch.vertex[v], std::span(soft.basis.shape).subspan(m * n, n));
-            for (int axis = 0; axis < 3; ++axis)
-                out.shape[v][axis][m] = moved[axis];
-        }
+        tissue::vertex_shapes(
+            soft.model, skin, patch.vertex[v], soft.shape_by_unknown, soft.basis.modes,
+            {out.shape[v][0].data(), out.shape[v][1].data(), out.shape[v][2].data()});
     }
 }
 

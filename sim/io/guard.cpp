@@ -1,6 +1,7 @@
 #include "sim/io/guard.h"
 
 #include <csignal>
+#include <initializer_list>
 
 namespace sim {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 namespace sim {
@@ -86,6 +87,14 @@ void send_force(Instrument& instrument, const haptics::ShaftPose& shaft, const g
 }
 
 } // namespace
+
+Coupling coupling_named(const std::string& name) {
+    if (name == "anchored")
+        return Coupling::anchored;
+    if (name == "hold")
+        return Coupling::hold;
+    throw std::invalid_argument(fmt::format("coupling \"{}\": must be anchored or hold", name));
+}
 
 ToolPlace place_of(const Instrument& instrument,
                    const std::array<std::int32_t, 3>& counts) noexcept {

@@ -8,9 +8,13 @@
 #include "haptics/safety/limits.h"
 #include "sim/exchange.h"
 
+#include <string>
+
 namespace sim {
 
 enum class Coupling : std::uint8_t { anchored, hold };
+/// Throws std::invalid_argument with what would be accepted.
+Coupling coupling_named(const std::string& name);
 
 /// One instrument: a device, and the tool that it moves through its trocar.
 struct Instrument {

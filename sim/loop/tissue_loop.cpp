@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
+#include <numbers>
 
 namespace sim {
 namespace {
@@ -105,7 +105,7 @@ double sunk_m(const Dimple& dimple, const glm::dvec3& place_m) noexcept {
         return 0.0;
     const double share = rho / dimple.reach_m;
     const double fade = (1.0 - share * share) * (1.0 - share * share);
-    const double profile = 2.0 / glm::pi<double>() *
+    const double profile = 2.0 / std::numbers::pi *
                            std::asin(std::min(1.0, dimple.contact_radius_m / std::max(rho, 1e-9)));
     return dimple.depth_m * profile * fade;
 }

@@ -107,14 +107,6 @@ std::unique_ptr<Session> session_of(const tasks::AttemptRow& recorded) {
     }
     return build(options, std::move(scene), recorded.exercise_text, "exercise in the logbook");
 }
-Coupling coupling_named(const std::string& name) {
-    if (name == "anchored")
-        return Coupling::anchored;
-    if (name == "hold")
-        return Coupling::hold;
-    throw std::invalid_argument(fmt::format("coupling \"{}\": must be anchored or hold", name));
-}
-
 tasks::SessionRow session_row(const std::string& input_class) {
     utsname name{};
     uname(&name);

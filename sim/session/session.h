@@ -54,8 +54,6 @@ std::unique_ptr<Session> session_of(const tasks::AttemptRow& recorded);
 /// This build and machine. `input_class`: haptic, force-free, mouse or scripted.
 tasks::SessionRow session_row(const std::string& input_class);
 
-Coupling coupling_named(const std::string& name);
-
 /// The attempt row that belongs to a session, and a fold over it.
 tasks::AttemptRow attempt_row(const Session& session, bool realtime);
 

@@ -1,7 +1,6 @@
 #include "sim/study/coupling_study.h"
 
 #include "sim/io/files.h"
-#include "sim/session/session.h"
 
 #include <fmt/format.h>
 

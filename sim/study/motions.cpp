@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
+#include <numbers>
 #include <stdexcept>
 
 namespace sim {
@@ -23,7 +23,7 @@ struct Shape {
     Plan (*at)(double t, double v, double scale);
 };
 
-constexpr double kTwoPi = 2.0 * glm::pi<double>();
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 double ramp(double t, double v, double from_m, double to_m) {
     return std::min(to_m, from_m + v * t);

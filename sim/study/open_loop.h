@@ -5,6 +5,7 @@
 
 #include "haptics/contact/coupling.h"
 #include "sim/loop/haptic_loop.h"
+#include "sim/loop/tissue_loop.h"
 #include "sim/study/motions.h"
 
 #include <functional>
