@@ -2,8 +2,9 @@
 // The few modes with which tissue answers at 1 kHz: moment-matched to the loads the tools may
 // apply before the next FEM answer (own directions with two or three moments, and a star of
 // neighbouring contact points, because the contact slides before the answer is used).
-//   B1 = A^-1 [n t1 t2 at c | n at c +- delta t1, c +- delta t2],  B2 = A^-1 M B1(c), B3 = A^-1 M
-//   B2(n) V: M-orthonormal, Lambda = V^T K V diagonal
+//   B1 = A^-1 [n t1 t2 at c | n at c +- delta t1, c +- delta t2]
+//   B2 = A^-1 M B1(n t1 t2 at c),  B3 = A^-1 M B2(n at c)
+//   V: M-orthonormal, Lambda = V^T K V diagonal
 #pragma once
 
 #include "tissue/response/contact_rows.h"
@@ -31,7 +32,8 @@ struct ContactBasis {
 };
 ContactBasis make_contact_basis(const CorotatedModel& model);
 
-/// Fills `basis` for up to three contacts on one body. `system` must be made at `state`.
+/// Fills `basis` for up to three contacts on one body. `system` must be made at `state`; if it
+/// could not be factored, or there is no contact, the basis has no modes.
 /// Directions that are already in the basis (relative size below 1e-6) are dropped. No allocation
 /// outside CHOLMOD.
 void compute_contact_basis(const CorotatedModel& model, const ContactSurface& surface,
