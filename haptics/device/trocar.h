@@ -14,8 +14,8 @@ namespace haptics {
 struct Trocar {
     glm::dvec3 fulcrum_m{0.0};
     double shaft_m = 0.33;
-    double min_insertion_m = 0.020; // below: insertion is clamped and the lever frozen there
-    double min_outside_m = 0.030;   // the handle never reaches the fulcrum
+    double min_insertion_m = 0.020; // below: insertion is clamped, the handle only turns the tip
+    double min_outside_m = 0.030;   // nearer to the fulcrum: clamped, and the lever frozen there
 };
 
 struct ShaftPose {

@@ -2,6 +2,11 @@
 // A haptic device that exists as physics only: mass, viscous and Coulomb friction with stick,
 // encoder quantisation, transport delay, force saturation - and the grip of the hand that holds
 // it (spring, damper, mass) pulled towards a goal. Stepped by whoever owns the tick; no clock.
+// Per axis, as in a device with one motor an axis:
+//   (m + m_grip) x'' = F + k_grip (goal - x) - (b + b_grip) x' - c sgn(x')
+// Exact between substeps for a force held over the substep; the spring's force is taken at the
+// middle of it. Coulomb friction: the instant at which x' comes to zero is found, and there the
+// device sticks until more than c pulls at it (Karnopp 1985).
 #pragma once
 
 #include "haptics/device/device.h"
@@ -14,7 +19,7 @@ struct Grip {
     bool held = true;
     double mass_kg = 0.10;        // of hand moving with the handle
     double stiffness_npm = 400.0; // pen or pinch grip
-    double damping_nspm = 5.0;
+    double damping_nspm = 5.0;    // against the room, not against the goal
 };
 
 struct VirtualDeviceModel {
@@ -47,9 +52,11 @@ class VirtualDevice final : public Device {
 
   private:
     static constexpr int kMaxDelay = 8;
+    static constexpr int kLimpAfterTicks = 20;
     VirtualDeviceModel model_;
     glm::dvec3 position_m_, velocity_mps_{0.0}, goal_m_, force_n_{0.0};
     std::array<glm::dvec3, kMaxDelay + 1> past_m_{};
+    int ticks_unwritten_ = 0;
     double jaw_ = 0.0;
     std::uint32_t sequence_ = 0;
     DeviceFault fault_ = DeviceFault::none;

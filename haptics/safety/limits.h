@@ -32,7 +32,8 @@ struct LimitState {
 };
 
 /// Force to send now. `fault` is this tick's read result.
-/// A fault or `enabled == false` gives exactly zero in the same tick.
+/// A fault, a force that is not finite or `enabled == false` gives exactly zero in the same tick,
+/// and what follows comes back on the ramp.
 glm::dvec3 limit_force(LimitState& state, const LimitConfig& config, const glm::dvec3& wanted_n,
                        DeviceFault fault) noexcept;
 
@@ -44,8 +45,9 @@ void resume(LimitState& state) noexcept;
 double stiffness_scale(const DeviceInfo& info, const glm::dmat3& jacobian, double tip_stiffness_npm,
                        double tick_s) noexcept;
 
-/// Energy the port has given out minus taken in, J: for a force held between ticks
-/// W_k = W_{k-1} - F_{k-1}.(x_k - x_{k-1}) (Hannaford & Ryu 2002). Observer only.
+/// Energy the port has taken in minus given out, J; below zero it has been a source. For a force
+/// held between ticks W_k = W_{k-1} - F_{k-1}.(x_k - x_{k-1}) (Hannaford & Ryu 2002). Observer
+/// only.
 struct EnergyObserver {
     double energy_j = 0.0;
     double min_j = 0.0;

@@ -1,5 +1,8 @@
 #include "haptics/contact/coupling.h"
 
+#include "haptics/device/trocar.h"
+#include "haptics/device/virtual_device.h"
+#include "haptics/safety/limits.h"
 #include "tests/haptics/mass_spring.h"
 
 #include <atomic>
@@ -66,4 +69,25 @@ TEST_CASE("no allocation: adopting, replaying and stepping a local model") {
     }
     CHECK(allocations == before);
     CHECK(replayed == 19);
+}
+
+TEST_CASE("no allocation: from device sample to limited force") {
+    haptics::VirtualDevice device({}, {0, 0, 0.1});
+    haptics::LimitState limits;
+    haptics::EnergyObserver observer;
+    const int before = allocations;
+    haptics::DeviceSample sample;
+    for (int tick = 0; tick < 50; ++tick) {
+        const haptics::DeviceFault fault = device.read(sample);
+        const haptics::ShaftPose pose = haptics::shaft_pose({}, device.handle_m());
+        const glm::dvec3 wanted_n =
+            haptics::stiffness_scale(device.info(), pose.jacobian, 300.0, 1e-3) *
+            haptics::force_at_handle(pose, {0.1, 0, 0.2});
+        const glm::dvec3 force_n = haptics::limit_force(limits, {}, wanted_n, fault);
+        haptics::observe_energy(observer, device.handle_m(), force_n);
+        device.write(force_n);
+        device.step(1e-3);
+    }
+    CHECK(allocations == before);
+    CHECK(device.handle_m().x != 0.0);
 }
