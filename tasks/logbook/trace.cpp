@@ -46,7 +46,7 @@ template <class Column> void tick_columns(Column&& column) {
         column([=](auto& row) -> auto& { return row.tool[t].flags; });
     }
 }
-constexpr std::size_t kTickColumns = 2 + kTools * 12;
+constexpr std::size_t kTickColumns = 2 + std::size_t{kTools} * 12;
 
 template <class Column> void step_columns(Column&& column) {
     column([](auto& row) -> auto& { return row.step; });
@@ -56,7 +56,8 @@ template <class Column> void step_columns(Column&& column) {
     column([](auto& row) -> auto& { return row.targets; });
 }
 constexpr std::size_t kStepColumns = 5;
-static_assert(kMaxRows * 10 * (kTickColumns + kStepColumns + 3 * kMaxTargets) < kMaxRawBytes);
+static_assert(kMaxRows * 10 * (kTickColumns + kStepColumns + 3 * std::size_t{kMaxTargets}) <
+              kMaxRawBytes);
 
 template <class Column> void target_columns(Column&& column) {
     for (std::size_t t = 0; t < kMaxTargets; ++t)

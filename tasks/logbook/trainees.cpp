@@ -68,7 +68,7 @@ std::string Logbook::add_trainee(std::string_view name) {
                      fmt::format("this name is there already, with id {}; add what tells the two "
                                  "people apart",
                                  id));
-    const std::string id = random_uuid();
+    std::string id = random_uuid();
     Statement insert(names, "INSERT INTO trainee (id, name) VALUES (?, ?)", kAction);
     insert.arg(id).arg(name).run();
     transaction.commit();

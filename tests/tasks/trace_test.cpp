@@ -174,6 +174,10 @@ TEST_CASE("a chunk cut short at any byte, or with a byte too many, is refused") 
     auto longer = good;
     longer.push_back(std::byte{0});
     CHECK_THROWS_AS(tasks::decode_chunk(longer), std::invalid_argument);
+    auto two_frames = good; // zstd alone would read on into a second frame
+    const auto empty = chunk_around({});
+    two_frames.insert(two_frames.end(), empty.begin() + 4, empty.end());
+    CHECK_THROWS_AS(tasks::decode_chunk(two_frames), std::invalid_argument);
 }
 
 TEST_CASE("damage behind a correct checksum decodes or is refused, never worse") {
@@ -208,12 +212,21 @@ TEST_CASE("sizes that the bytes cannot fill are refused before memory is taken")
     CHECK_THROWS_WITH_AS(tasks::decode_chunk(chunk_around(payload)),
                          doctest::Contains("claims 10000 ticks"), std::invalid_argument);
     payload.clear();
-    tasks::put_varint(payload, ~std::uint64_t{0}); // times columns it would wrap
-    tasks::put_varint(payload, ~std::uint64_t{0});
-    CHECK_THROWS_AS(tasks::decode_chunk(chunk_around(payload)), std::invalid_argument);
+    tasks::put_varint(payload, std::uint64_t{1} << 63); // times an even number of columns: 0
+    tasks::put_varint(payload, 0);
+    CHECK_THROWS_WITH_AS(tasks::decode_chunk(chunk_around(payload)),
+                         doctest::Contains("claims 9223372036854775808 ticks"),
+                         std::invalid_argument);
     const std::vector<std::byte> bomb(50'000'000); // compresses to a few kB
     CHECK_THROWS_WITH_AS(tasks::decode_chunk(chunk_around(bomb)),
                          doctest::Contains("claims 50000000 bytes"), std::invalid_argument);
+}
+
+TEST_CASE("a payload with a byte after its last column is refused") {
+    std::vector<std::byte> payload = payload_of(sample_chunk());
+    payload.push_back(std::byte{0});
+    CHECK_THROWS_WITH_AS(tasks::decode_chunk(chunk_around(payload)),
+                         doctest::Contains("1 bytes after the last column"), std::invalid_argument);
 }
 
 TEST_CASE("a value that does not fit its column is refused") {
