@@ -137,6 +137,7 @@ tissue::TetMesh make_mesh(const Recipe& recipe, const Surface& boundary, PhaseCl
     }
     if (!answer.mesh) {
         std::string why = "no tetrahedra";
+        why += answer.problem.empty() ? "" : "; " + answer.problem;
         for (const auto& a : answer.attempts) {
             why += fmt::format("; {}: {}", a.what, a.outcome);
         }

@@ -121,20 +121,29 @@ NearestPoint NearestOnSurface::operator()(const glm::dvec3& p) const {
     NearestPoint best;
     best.distance_m = std::numeric_limits<double>::max();
     const auto centre = cell_of(p);
-    // a cell in shell `ring` is at least (ring - 1) cells away from p, seen from p's own cell or
-    // from the nearest cell of the grid
+    // distance from p to the slab of cells `index` along one axis
+    const auto gap_m = [&](int axis, int index) {
+        const double low = low_m_[axis] + index * cell_m_;
+        return std::max({low - p[axis], p[axis] - (low + cell_m_), 0.0});
+    };
+    // shells of cells around the cell of p, or around the nearest cell if p is outside the grid:
+    // every cell of shell `ring` is at least (ring - 1) cells away
     const int last = std::max({count_[0], count_[1], count_[2]});
-    for (int ring = 0; ring <= last; ++ring) {
-        if (best.distance_m < (ring - 1) * cell_m_) {
-            break;
-        }
-        for (int k = -ring; k <= ring; ++k) {
-            for (int j = -ring; j <= ring; ++j) {
-                const bool side = std::abs(k) == ring || std::abs(j) == ring;
+    for (int ring = 0; ring <= last && best.distance_m >= (ring - 1) * cell_m_; ++ring) {
+        for (int z = std::max(centre[2] - ring, 0); z <= std::min(centre[2] + ring, count_[2] - 1);
+             ++z) {
+            for (int y = std::max(centre[1] - ring, 0);
+                 y <= std::min(centre[1] + ring, count_[1] - 1); ++y) {
+                const double gap_yz_m = std::hypot(gap_m(1, y), gap_m(2, z));
+                if (gap_yz_m > best.distance_m) {
+                    continue;
+                }
+                const bool side =
+                    std::abs(z - centre[2]) == ring || std::abs(y - centre[1]) == ring;
                 for (int i = -ring; i <= ring; i += side ? 1 : std::max(2 * ring, 1)) {
-                    const int x = centre[0] + i, y = centre[1] + j, z = centre[2] + k;
-                    if (x >= 0 && y >= 0 && z >= 0 && x < count_[0] && y < count_[1] &&
-                        z < count_[2]) {
+                    const int x = centre[0] + i;
+                    if (x >= 0 && x < count_[0] &&
+                        std::hypot(gap_m(0, x), gap_yz_m) <= best.distance_m) {
                         look_into(static_cast<std::size_t>((z * count_[1] + y) * count_[0] + x), p,
                                   best);
                     }

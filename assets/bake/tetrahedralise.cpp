@@ -85,6 +85,30 @@ std::vector<std::byte> run_tetgen(const Surface& boundary, std::string switches)
     return bytes;
 }
 
+/// TetGen may crash on a surface that intersects itself; its own check for that does not.
+int count_intersecting(const Surface& boundary, double time_limit_s) {
+    const ChildAnswer child = run_in_child(
+        [&] {
+            tetgenio in, out;
+            fill_input(boundary, in);
+            std::string switches = "pdQ";
+            try {
+                tetrahedralize(switches.data(), &in, &out);
+            } catch (const int code) {
+                throw std::runtime_error(tetgen_reason(code));
+            }
+            std::vector<std::byte> bytes;
+            put(bytes, &out.numberoftrifaces, 1);
+            return bytes;
+        },
+        time_limit_s);
+    int count = 0;
+    if (child.done && child.bytes.size() == sizeof count) {
+        std::memcpy(&count, child.bytes.data(), sizeof count);
+    }
+    return count;
+}
+
 tissue::TetMesh unpack(const std::vector<std::byte>& bytes) {
     const std::byte* at = bytes.data();
     const auto take = [&](void* to, std::size_t size) {
@@ -144,8 +168,12 @@ TetAnswer tetrahedralise(const Surface& boundary, const TetOptions& o) {
         answer.attempts.push_back({what, child.done ? "done" : child.reason, child.seconds});
         if (child.done) {
             answer.mesh = unpack(child.bytes);
-            break;
+            return answer;
         }
+    }
+    const int intersecting = count_intersecting(boundary, o.time_limit_s);
+    if (intersecting > 0) {
+        answer.problem = fmt::format("{} triangles of the surface intersect others", intersecting);
     }
     return answer;
 }

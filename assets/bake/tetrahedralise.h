@@ -24,6 +24,7 @@ struct TetAttempt {
 struct TetAnswer {
     std::optional<tissue::TetMesh> mesh; // none: refused, the attempts say why
     std::vector<TetAttempt> attempts;
+    std::string problem; // of the surface, if one was found after the last attempt failed
 };
 
 /// The asked quality; then coarser; then without quality; then it refuses.
