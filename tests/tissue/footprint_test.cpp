@@ -87,7 +87,7 @@ TEST_CASE("footprint: the samples integrate the kernel 2/(pi r^2) (1 - rho^2)") 
     const double r = 0.018;
     double mass = 0.0, x1 = 0.0, x2 = 0.0, x4 = 0.0, x2y2 = 0.0;
     const auto samples = tissue::kernel_samples(tree, centre, {0, 0, 1}, r, r);
-    CHECK(samples.size() == 36);
+    CHECK(samples.size() == 90);
     for (const auto& [at, share] : samples) {
         const dvec3 p = (tissue::position_m(tree, at) - centre) / r;
         CHECK(std::abs(p.z) < 1e-12);
@@ -194,7 +194,7 @@ TEST_CASE("footprint: at a thin margin samples do not fall on the far side") {
         CHECK(std::abs(tissue::position_m(tree, sample.at).z - size.z) < 1e-12);
 }
 
-TEST_CASE("footprint: nodal size is the mean edge and grows by at most half the distance") {
+TEST_CASE("footprint: nodal size is the mean edge and grows by at most 0.3 of the distance") {
     // Kuhn's cube: three edges 1, two sqrt 2, one sqrt 3 in each tet
     const auto cube = tissue::box_mesh(dvec3{0.04}, {4, 4, 4});
     for (const double h : tissue::nodal_size_m(cube))
@@ -209,7 +209,7 @@ TEST_CASE("footprint: nodal size is the mean edge and grows by at most half the 
     for (std::size_t i = 0; i < size.size(); ++i) {
         for (std::size_t j = 0; j < size.size(); ++j) {
             const double gap_m = glm::distance(graded.rest_m[i], graded.rest_m[j]);
-            too_steep += size[i] < size[j] - 0.5 * gap_m - 1e-15;
+            too_steep += size[i] < size[j] - 0.3 * gap_m - 1e-15;
         }
     }
     CHECK(too_steep == 0);

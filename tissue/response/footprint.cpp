@@ -17,7 +17,7 @@ namespace {
 using glm::dvec3;
 
 constexpr double kSmallestWeight = 1e-12;
-constexpr double kGrowth = 0.5; // of the nodal size per unit of distance
+constexpr double kGrowth = 0.3; // of the nodal size per unit of distance
 
 double mean_edge_m(const TetMesh& mesh, const Tet& tet) {
     double sum = 0.0;
@@ -73,6 +73,11 @@ double backed_thickness_m(const BoundaryTree& tree, std::span<const std::uint8_t
     return kUnbacked_m;
 }
 
+double size_at(const BoundaryTree& tree, const BoundaryPoint& at, std::span<const double> size) {
+    const auto [a, b, c] = tree.triangle[at.triangle];
+    return glm::dot(at.weight, dvec3{size[a], size[b], size[c]});
+}
+
 void append_row(const BoundaryTree& tree, std::span<const KernelSample> samples, const dvec3& at_m,
                 ContactSurface& surface) {
     std::map<std::uint32_t, double> weight;
@@ -111,7 +116,7 @@ std::vector<double> nodal_size_m(const TetMesh& mesh) {
     for (std::size_t i = 0; i < nodes; ++i)
         mean[i] = volume[i] > 0.0 ? sum[i] / volume[i] : 0.0;
 
-    // h_i = max_j (h_j - 0.5 |x_i - x_j|): coarse tets below a fine skin count
+    // h_i = max_j (h_j - 0.3 |x_i - x_j|): coarse tets below a fine skin count
     std::vector<double> size = mean;
     for (std::size_t i = 0; i < nodes; ++i) {
         for (std::size_t j = 0; j < nodes; ++j)
@@ -144,17 +149,15 @@ void make_footprints(const TetMesh& mesh, std::span<const std::uint8_t> anchored
         const dvec3& at_m = surface.rest_m[v];
         if (normal[v] == dvec3{0.0})
             throw std::invalid_argument("skin vertex " + std::to_string(v) + " has no area");
-        const BoundaryPoint below = nearest_point(tree, at_m);
-        const Triangle& corner = tree.triangle[below.triangle];
-        const double h =
-            glm::dot(below.weight, dvec3{size[corner[0]], size[corner[1]], size[corner[2]]});
+        const double h = size_at(tree, nearest_point(tree, at_m), size);
+        const double reach = kernel_reach_m(h, options);
+        const BoundaryPoint below = point_below(tree, at_m, normal[v], reach);
         const double r = kernel_radius_m(tree, at_m, normal[v], h, options);
         if (options.point_rows)
             append_row(tree, std::vector<KernelSample>{{below, 1.0}}, at_m, surface);
         else
-            append_row(tree, kernel_samples(tree, at_m, normal[v], r, kernel_reach_m(h, options)),
-                       at_m, surface);
-        surface.frame_node.push_back(corner);
+            append_row(tree, kernel_samples(tree, at_m, normal[v], r, reach), at_m, surface);
+        surface.frame_node.push_back(tree.triangle[below.triangle]);
         surface.footprint_radius_m.push_back(r);
         surface.thickness_m.push_back(backed_thickness_m(tree, anchored, below, normal[v]));
     }

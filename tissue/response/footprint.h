@@ -1,6 +1,6 @@
 // tissue/response/footprint.h
 // Contact on coarse tetrahedra: makes the footprint rows of a ContactSurface, at bake time.
-// Kernel k(rho) = 2/(pi r^2) (1 - rho^2), rho = distance / r, 36 points on 3 rings, in the tangent
+// Kernel k(rho) = 2/(pi r^2) (1 - rho^2), rho = distance / r, 90 points on 5 rings, in the tangent
 // plane at the vertex, each carried along the normal onto the body's boundary; points off the body
 // are left out and the rest renormalised. r = max(1.3175 a, min(c h, s)): a tip radius, h nodal
 // size, c = 1.5, s distance to a free edge of the body (or to where it has turned by 66 deg).
@@ -29,7 +29,7 @@ void make_footprints(const TetMesh& mesh, std::span<const std::uint8_t> anchored
                      const FootprintOptions& options, ContactSurface& surface);
 
 /// Nodal size h of every node of the body (volume-weighted mean edge, smoothed so that it grows
-/// by at most 0.5 per unit of distance).
+/// by at most 0.3 per unit of distance).
 std::vector<double> nodal_size_m(const TetMesh& mesh);
 
 } // namespace tissue

@@ -84,6 +84,12 @@ std::vector<KernelSample> kernel_samples(const BoundaryTree& tree, const dvec3& 
     return samples;
 }
 
+BoundaryPoint point_below(const BoundaryTree& tree, const dvec3& place_m, const dvec3& normal,
+                          double reach_m) {
+    const auto at = carry(tree, place_m, normal, reach_m);
+    return at ? *at : nearest_point(tree, place_m);
+}
+
 double kernel_reach_m(double size_m, const FootprintOptions& options) {
     return std::max(kPunchRatio * options.tip_radius_max_m, options.size_factor * size_m);
 }

@@ -17,7 +17,8 @@ struct KernelSample {
     double share;
 };
 
-inline constexpr int kKernelRings = 3;
+/// With 3 rings a fine skin over coarse tets (h a third of r) feels 36 single points: 7 % too soft.
+inline constexpr int kKernelRings = 5;
 
 /// Points around `centre_m` in the plane across `normal` (unit), 6, 12, 18 .. on the rings, carried
 /// along the normal onto the boundary where it faces the same way. Points off the body are left
@@ -25,6 +26,11 @@ inline constexpr int kKernelRings = 3;
 std::vector<KernelSample> kernel_samples(const BoundaryTree& tree, const glm::dvec3& centre_m,
                                          const glm::dvec3& normal, double radius_m, double reach_m,
                                          int rings = kKernelRings);
+
+/// The boundary below or above a place: along the normal where it faces the same way, within
+/// `reach_m`; else the nearest.
+BoundaryPoint point_below(const BoundaryTree& tree, const glm::dvec3& place_m,
+                          const glm::dvec3& normal, double reach_m);
 
 /// r = max(1.3175 a, min(c h, s)), s: distance in the tangent plane at which the body ends or has
 /// turned away. `size_m` is h here.

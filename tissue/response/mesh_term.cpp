@@ -17,8 +17,9 @@ namespace {
 
 using glm::dvec3;
 
-constexpr int kColumns = 32;    // right-hand sides per solve
-constexpr double kSmooth = 0.5; // cos 60 deg: beyond, a node of the boundary is an edge
+constexpr int kColumns = 32;      // right-hand sides per solve
+constexpr double kSmooth = 0.8;   // cos 37 deg from the mean normal: beyond, the node is on an edge
+constexpr double kSameSide = 0.5; // cos 60 deg between triangles
 constexpr double kSameNormal = 0.98;
 constexpr double kRounding = 1e-8; // of W
 
@@ -59,7 +60,7 @@ Places find_places(const BoundaryTree& tree) {
             if (!smooth) { // of the triangles that face as this one does
                 normal = dvec3{0.0};
                 for (const std::uint32_t u : around[node]) {
-                    if (glm::dot(tree.normal[t], tree.normal[u]) > kSmooth)
+                    if (glm::dot(tree.normal[t], tree.normal[u]) > kSameSide)
                         normal += area[u] * tree.normal[u];
                 }
                 normal = glm::normalize(normal);
@@ -76,6 +77,36 @@ Places find_places(const BoundaryTree& tree) {
         }
     }
     return places;
+}
+
+std::vector<BoundaryPoint> points_below(const BoundaryTree& tree, const ContactSurface& surface) {
+    const std::vector<dvec3> normal = vertex_normals(surface.rest_m, surface.triangles);
+    std::vector<BoundaryPoint> below;
+    for (std::size_t v = 0; v < surface.rest_m.size(); ++v)
+        below.push_back(
+            point_below(tree, surface.rest_m[v], normal[v], surface.footprint_radius_m[v]));
+    return below;
+}
+
+// A skin need not cover the whole body.
+void drop_unused(std::span<const BoundaryPoint> below, Places& places) {
+    std::vector<std::int64_t> moved(places.place.size(), -1);
+    for (const BoundaryPoint& at : below) {
+        for (const std::uint32_t place : places.corner[at.triangle])
+            moved[place] = 0;
+    }
+    std::vector<Place> kept;
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+        if (moved[i] < 0)
+            continue;
+        moved[i] = static_cast<std::int64_t>(kept.size());
+        kept.push_back(std::move(places.place[i]));
+    }
+    for (auto& corner : places.corner) {
+        for (std::uint32_t& place : corner)
+            place = static_cast<std::uint32_t>(std::max<std::int64_t>(0, moved[place]));
+    }
+    places.place = std::move(kept);
 }
 
 // Column = kernel of `place` in `direction`.
@@ -167,6 +198,8 @@ void make_mesh_terms(const TetMesh& mesh, double poisson, std::span<const std::u
     const BoundaryTree tree = make_boundary_tree(mesh);
     const std::vector<double> size = nodal_size_m(mesh);
     Places places = find_places(tree);
+    const std::vector<BoundaryPoint> below = points_below(tree, surface);
+    drop_unused(below, places);
     for (Place& place : places.place) {
         const dvec3& at_m = mesh.rest_m[place.node];
         const double h = size[place.node];
@@ -186,7 +219,7 @@ void make_mesh_terms(const TetMesh& mesh, double poisson, std::span<const std::u
 
     // dW goes as 1/r where r changes, so r dW is what is interpolated
     for (std::size_t v = 0; v < surface.rest_m.size(); ++v) {
-        const BoundaryPoint at = nearest_point(tree, surface.rest_m[v]);
+        const BoundaryPoint& at = below[v];
         double normal = 0.0, tangential = 0.0;
         for (int k = 0; k < 3; ++k) {
             const Place& place = places.place[places.corner[at.triangle][k]];
