@@ -25,6 +25,32 @@ Recording join(const std::vector<tasks::Chunk>& chunks) {
     return all;
 }
 
+// What each device gave, tick by tick. A tool that nobody held has no device.
+struct RecordedTools {
+    std::array<std::vector<haptics::RecordedRead>, kTools> read;
+    std::array<std::unique_ptr<haptics::ReplayDevice>, kTools> device;
+};
+
+RecordedTools recorded_tools(const Recording& recording) {
+    RecordedTools tools;
+    for (int i = 0; i < kTools; ++i) {
+        bool held = false;
+        for (const tasks::TickTrace& tick : recording.ticks) {
+            const tasks::ToolTrace& t = tick.tool[i];
+            held |= (t.flags & 2) != 0;
+            tools.read[i].push_back({.sample = {.counts = t.counts,
+                                                .roll_counts = t.roll_counts,
+                                                .jaw_counts = t.jaw_counts},
+                                     .fault = (t.flags & 4) ? haptics::DeviceFault::timeout
+                                                            : haptics::DeviceFault::none});
+        }
+        if (held)
+            tools.device[i] =
+                std::make_unique<haptics::ReplayDevice>(haptics::DeviceInfo{}, tools.read[i]);
+    }
+    return tools;
+}
+
 bool from_outside(tasks::EventKind kind) {
     using enum tasks::EventKind;
     return kind == paused || kind == resumed || kind == abandoned || kind == rig_fault;
@@ -52,9 +78,9 @@ ReplayResult run_replay(Session& session, const tasks::AttemptRow& recorded,
     tasks::AttemptRow row = recorded;
     Attempt attempt(session.scene.scene, session.exercise, session.rest_targets, row, nullptr);
     Exchange& exchange = *session.exchange;
-    std::array<haptics::ReplayDevice, kTools> device;
+    RecordedTools tools = recorded_tools(recording);
     for (int i = 0; i < kTools; ++i)
-        session.haptics.instrument[i].device = &device[i];
+        session.haptics.instrument[i].device = tools.device[i].get();
 
     constexpr std::size_t kRemembered = 4096; // ticks; an answer older than this never was used
     std::vector<ToolsNow> past(kRemembered);
@@ -74,15 +100,6 @@ ReplayResult run_replay(Session& session, const tasks::AttemptRow& recorded,
         }
         if (fresh)
             exchange.answers.publish();
-        for (int i = 0; i < kTools; ++i) {
-            const tasks::ToolTrace& tool = wanted.tool[i];
-            device[i].set({.counts = tool.counts,
-                           .roll_counts = tool.roll_counts,
-                           .jaw_counts = tool.jaw_counts},
-                          (tool.flags & 4) ? haptics::DeviceFault::timeout
-                                           : haptics::DeviceFault::none);
-            session.haptics.instrument[i].device = (tool.flags & 2) ? &device[i] : nullptr;
-        }
         haptic_tick(session.haptics, exchange, trace);
         past[static_cast<std::size_t>(trace.tick) % kRemembered] = exchange.tools.latest();
         attempt.add(trace);
