@@ -1,0 +1,69 @@
+// sim/view/screens.h
+// What the screens around the picture say: menu, instruction card, score. Plain data, filled by
+// the train command, drawn by Window::draw(). All texts UTF-8 in Latin-1's range.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace view {
+
+enum class Screen { menu, card, demo, run, paused, score };
+
+struct MenuExercise {
+    std::string title;
+    std::string hands;   // which roles it needs, in words
+    std::string summary; // one line
+};
+
+struct MenuModel {
+    std::vector<MenuExercise> exercises;
+    std::vector<std::string> trainees; // names or ids
+    int trainee = -1;                  // chosen one; -1: nobody, kept without a name
+    std::string devices;               // what moves the tools, in words
+};
+
+struct CardModel {
+    std::string title;
+    std::string text;                // instructions, wrapped here
+    std::vector<std::string> limits; // "Force 0.1 to 1.0 N", one per line
+    bool demo_available = true;
+};
+
+enum class Verdict { none, good, bad };
+
+struct ScoreMetric {
+    std::string name;
+    double value = 0.0;
+    std::string unit;
+    bool lower_is_better = true;
+    bool directed = true; // false: neither way is better, no arrow
+    bool felt = true;     // false: reads "not felt"
+    int decimals = 2;
+    Verdict verdict = Verdict::none; // against a level, if one is set
+    std::string level;               // "< 60 s", empty: no level
+};
+
+struct ScoreError {
+    double time_s = 0.0;
+    std::string text;
+};
+
+struct ScoreModel {
+    std::string title; // exercise and trainee
+    bool completed = false;
+    bool valid = true;
+    std::vector<std::string> invalid_reasons;
+    std::vector<ScoreMetric> metrics;
+    std::vector<ScoreError> errors;
+    std::string saved; // where it was kept, in words; empty: nowhere
+};
+
+struct Screens {
+    Screen screen = Screen::menu;
+    MenuModel menu;
+    CardModel card;
+    ScoreModel score;
+};
+
+} // namespace view
