@@ -14,19 +14,33 @@ std::atomic<bool> counting{false};
 std::atomic<int> allocations{0};
 
 void* counted(std::size_t size) {
-    if (counting.load(std::memory_order_relaxed)) allocations.fetch_add(1);
-    if (void* p = std::malloc(size ? size : 1)) return p;
+    if (counting.load(std::memory_order_relaxed))
+        allocations.fetch_add(1);
+    if (void* p = std::malloc(size ? size : 1))
+        return p;
     throw std::bad_alloc{};
 }
 
-}  // namespace
+} // namespace
 
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new[](std::size_t size) { return counted(size); }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete[](void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+void* operator new(std::size_t size) {
+    return counted(size);
+}
+void* operator new[](std::size_t size) {
+    return counted(size);
+}
+void operator delete(void* p) noexcept {
+    std::free(p);
+}
+void operator delete[](void* p) noexcept {
+    std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+    std::free(p);
+}
+void operator delete[](void* p, std::size_t) noexcept {
+    std::free(p);
+}
 
 TEST_CASE("allocation: the counter counts") {
     allocations = 0;
@@ -61,11 +75,13 @@ TEST_CASE("allocation: a haptic tick and a tissue step allocate nothing, touchin
         sim::haptic_tick(session->haptics, exchange, trace);
         counting = false;
         in_ticks += allocations;
-        for (const tasks::ToolTrace& tool : trace.tool) touching += tool.flags & 1;
-        if (tick % 10 == 0) sampled = exchange.tools.latest();
+        for (const tasks::ToolTrace& tool : trace.tool)
+            touching += tool.flags & 1;
+        if (tick % 10 == 0)
+            sampled = exchange.tools.latest();
         sight = sim::sight_of(*session, trace, 0, false);
     }
-    CHECK(touching > 100);   // else the test looked at nothing
+    CHECK(touching > 100); // else the test looked at nothing
     CHECK(in_ticks == 0);
     CHECK(in_steps == 0);
 }

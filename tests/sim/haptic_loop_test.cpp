@@ -20,7 +20,8 @@ struct PressingDevice final : haptics::Device {
 
     const haptics::DeviceInfo& info() const noexcept override { return about; }
     haptics::DeviceFault read(haptics::DeviceSample& out) noexcept override {
-        if (reads >= alive_ticks) return haptics::DeviceFault::unplugged;
+        if (reads >= alive_ticks)
+            return haptics::DeviceFault::unplugged;
         ++reads;
         out = sample;
         return haptics::DeviceFault::none;
@@ -45,7 +46,8 @@ void fill_floor(haptics::LocalModels& local) {
         tool.vertices = 4;
         tool.triangles = 2;
         const glm::dvec3 corner[4]{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-        for (int v = 0; v < 4; ++v) tool.vertex[v] = {.anchor_m = corner[v], .normal = {0, 0, 1}};
+        for (int v = 0; v < 4; ++v)
+            tool.vertex[v] = {.anchor_m = corner[v], .normal = {0, 0, 1}};
         tool.triangle[0] = {.vertex = {0, 1, 2}, .neighbour = {-1, 1, -1}, .id = 0};
         tool.triangle[1] = {.vertex = {0, 2, 3}, .neighbour = {-1, -1, 0}, .id = 1};
         tool.contact = {0, {0.5, 0.0, 0.5}};
@@ -73,15 +75,16 @@ struct Bench {
         exchange->answers.publish();
     }
     void run(int ticks) {
-        for (int t = 0; t < ticks; ++t) sim::haptic_tick(rig, *exchange, trace);
+        for (int t = 0; t < ticks; ++t)
+            sim::haptic_tick(rig, *exchange, trace);
     }
 };
 
-}  // namespace
+} // namespace
 
 TEST_CASE("haptic loop: after the ramp the handle feels stiffness times depth along the shaft") {
     Bench bench(1e-3);
-    bench.run(1000);   // ramp of 0.75 s
+    bench.run(1000); // ramp of 0.75 s
     // straight shaft: J along it is 1
     for (const PressingDevice& device : bench.device) {
         CHECK(device.felt_n.z == doctest::Approx(kStiffness_npm * 1e-3).epsilon(1e-6));
@@ -113,7 +116,8 @@ TEST_CASE("haptic loop: Esc zeroes every force in the next tick") {
     bench.run(1000);
     bench.exchange->zero_forces = true;
     bench.run(1);
-    for (const PressingDevice& device : bench.device) CHECK(device.felt_n == glm::dvec3{0.0});
+    for (const PressingDevice& device : bench.device)
+        CHECK(device.felt_n == glm::dvec3{0.0});
 }
 
 TEST_CASE("haptic loop: an answer that is not a number never reaches a hand or the log") {

@@ -19,8 +19,10 @@ using Clock = std::chrono::steady_clock;
 
 pid_t start(const std::string& log) {
     const pid_t child = fork();
-    if (child != 0) return child;
-    if (!std::freopen("/dev/null", "w", stdout)) _exit(3);
+    if (child != 0)
+        return child;
+    if (!std::freopen("/dev/null", "w", stdout))
+        _exit(3);
     execl(TROCAR_BINARY, TROCAR_BINARY, "run", "touch-points", "--realtime", "--seconds", "60",
           "--log", log.c_str(), static_cast<char*>(nullptr));
     _exit(4);
@@ -34,16 +36,16 @@ std::size_t recorded_ticks(tasks::Logbook& logbook, std::int64_t attempt) {
     return ticks;
 }
 
-}  // namespace
+} // namespace
 
 TEST_CASE("kill -9: at 20 random moments nothing but the last second is lost") {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("trocar_kill_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder);
     const std::string log = (folder / "station.db").string();
-    tasks::Logbook watcher(log);   // the station's reader, open all the time
+    tasks::Logbook watcher(log); // the station's reader, open all the time
     std::mt19937_64 random(7);
-    std::vector<std::size_t> whole;   // ticks of each earlier attempt, as first seen
+    std::vector<std::size_t> whole; // ticks of each earlier attempt, as first seen
     for (int round = 0; round < 20; ++round) {
         const pid_t child = start(log);
         REQUIRE(child > 0);
@@ -58,7 +60,7 @@ TEST_CASE("kill -9: at 20 random moments nothing but the last second is lost") {
         const double ran_s = std::chrono::duration<double>(Clock::now() - begun).count();
         waitpid(child, nullptr, 0);
 
-        tasks::Logbook logbook(log);   // as the next start of the station opens it
+        tasks::Logbook logbook(log); // as the next start of the station opens it
         const auto attempts = logbook.attempts();
         for (std::size_t i = 0; i < whole.size(); ++i) {
             CHECK(recorded_ticks(logbook, attempts[i].id) == whole[i]);

@@ -10,7 +10,7 @@
 
 namespace {
 
-constexpr double kSeconds = 8.0;   // long enough for a touch, short enough for every build
+constexpr double kSeconds = 12.0; // long enough for a touch, short enough for every build
 
 sim::RunOptions short_run(std::uint64_t seed) {
     sim::RunOptions options;
@@ -40,7 +40,7 @@ struct TemporaryLog {
     ~TemporaryLog() { std::filesystem::remove_all(folder); }
 };
 
-}  // namespace
+} // namespace
 
 TEST_CASE("lockstep: the same seed gives the same hash, another seed another") {
     const std::string first = perform(short_run(3)).row.log_sha256;
@@ -54,7 +54,8 @@ TEST_CASE("lockstep: no rig fault, and the tools do touch the tissue") {
     CHECK(outcome.row.valid);
     double force_peak = 0.0;
     for (const tasks::Metric& m : outcome.metrics) {
-        if (m.id == "force_peak") force_peak = m.value;
+        if (m.id == "force_peak")
+            force_peak = m.value;
     }
     CHECK(force_peak > 0.05);
 }
@@ -67,7 +68,8 @@ TEST_CASE("replay: a recorded attempt gives the same hash and the same forces") 
     const auto row = logbook.attempt(id);
     REQUIRE(row);
     std::vector<tasks::Chunk> chunks;
-    for (const auto& bytes : logbook.chunks(id)) chunks.push_back(tasks::decode_chunk(bytes));
+    for (const auto& bytes : logbook.chunks(id))
+        chunks.push_back(tasks::decode_chunk(bytes));
     const auto session = sim::session_of(*row);
     const sim::ReplayResult again = sim::run_replay(*session, *row, chunks, logbook.events(id));
     CHECK(again.worst_force_difference_n == 0.0);
@@ -79,11 +81,12 @@ TEST_CASE("replay: another coupling moves the same way and feels different") {
     const TemporaryLog log;
     tasks::Logbook logbook(log.path());
     std::int64_t id = 0;
-    perform(short_run(5), &logbook, &id);
+    perform(short_run(3), &logbook, &id);
     const auto row = logbook.attempt(id);
     REQUIRE(row);
     std::vector<tasks::Chunk> chunks;
-    for (const auto& bytes : logbook.chunks(id)) chunks.push_back(tasks::decode_chunk(bytes));
+    for (const auto& bytes : logbook.chunks(id))
+        chunks.push_back(tasks::decode_chunk(bytes));
     const auto session = sim::session_of(*row);
     session->haptics.coupling = sim::Coupling::hold;
     const sim::ReplayResult held = sim::run_replay(*session, *row, chunks, logbook.events(id));
@@ -103,8 +106,10 @@ TEST_CASE("rescore: the recorded ticks alone give back every metric exactly") {
                       nullptr);
     for (const auto& bytes : logbook.chunks(id)) {
         const tasks::Chunk chunk = tasks::decode_chunk(bytes);
-        for (const tasks::StepTrace& step : chunk.steps) fold.add(step);
-        for (const tasks::TickTrace& tick : chunk.ticks) fold.add(tick);
+        for (const tasks::StepTrace& step : chunk.steps)
+            fold.add(step);
+        for (const tasks::TickTrace& tick : chunk.ticks)
+            fold.add(tick);
     }
     const std::vector<tasks::Metric> again = fold.finish(row->rig).metrics;
     REQUIRE(again.size() == live.metrics.size());

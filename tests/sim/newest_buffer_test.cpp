@@ -7,7 +7,7 @@
 namespace {
 
 struct Pair {
-    int a = 0, b = 0;   // the writer keeps a == b
+    int a = 0, b = 0; // the writer keeps a == b
 };
 
 constexpr int kLast = 200'000;
@@ -19,7 +19,7 @@ void write_all(sim::NewestBuffer<Pair>& buffer) {
     }
 }
 
-}  // namespace
+} // namespace
 
 TEST_CASE("newest buffer: the reader sees whole values in order and ends on the last") {
     sim::NewestBuffer<Pair> buffer;
@@ -46,11 +46,13 @@ TEST_CASE("newest buffer: a kept value stays whole while newer ones are fetched"
     int seen = 0, fetches = 0;
     while (seen < kLast) {
         const Pair* fresh = buffer.fetch();
-        if (kept) changed |= kept->a != kept_copy.a || kept->b != kept_copy.b;
-        if (!fresh) continue;
+        if (kept)
+            changed |= kept->a != kept_copy.a || kept->b != kept_copy.b;
+        if (!fresh)
+            continue;
         torn |= fresh->a != fresh->b;
         seen = fresh->a;
-        if (++fetches % 3 == 0) {   // some are looked at and dropped, some become the kept one
+        if (++fetches % 3 == 0) { // some are looked at and dropped, some become the kept one
             kept = fresh;
             kept_copy = *fresh;
             buffer.keep();

@@ -9,14 +9,16 @@ TEST_CASE("ring: every value arrives once and in order across threads") {
     sim::SpscRing<int, 256> ring;
     std::thread writer([&] {
         for (int i = 0; i < kCount; ++i) {
-            while (!ring.push(i)) std::this_thread::yield();
+            while (!ring.push(i))
+                std::this_thread::yield();
         }
     });
     int expected = 0;
     bool in_order = true;
     while (expected < kCount) {
         int value = 0;
-        if (!ring.pop(value)) continue;
+        if (!ring.pop(value))
+            continue;
         in_order &= value == expected;
         ++expected;
     }
@@ -28,7 +30,8 @@ TEST_CASE("ring: every value arrives once and in order across threads") {
 
 TEST_CASE("ring: a full ring refuses and keeps what it has") {
     sim::SpscRing<int, 4> ring;
-    for (int i = 0; i < 4; ++i) CHECK(ring.push(i));
+    for (int i = 0; i < 4; ++i)
+        CHECK(ring.push(i));
     CHECK_FALSE(ring.push(4));
     int value = -1;
     CHECK(ring.pop(value));

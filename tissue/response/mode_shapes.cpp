@@ -1,3 +1,5 @@
+// tissue/response/mode_shapes.cpp
+// See the header. Called by sim/bridge in the tissue loop, once per patch vertex and FEM step.
 #include "tissue/response/mode_shapes.h"
 
 #include <algorithm>
