@@ -1,5 +1,7 @@
 #include "assets/bake/bake.h"
 
+#include "tests/bake/shapes_for_tests.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -107,9 +109,9 @@ TEST_CASE("bake: the liver is as large as a liver of the recipe's kind") {
         high = glm::max(high, p);
     }
     const glm::dvec3 size_mm = 1e3 * (high - low);
-    CHECK(size_mm.x == doctest::Approx(180).epsilon(0.06));
-    CHECK(size_mm.y == doctest::Approx(120).epsilon(0.06));
-    CHECK(size_mm.z == doctest::Approx(65).epsilon(0.12));
+    CHECK(size_mm.x == bake_tests::near(180, 0.06));
+    CHECK(size_mm.y == bake_tests::near(120, 0.06));
+    CHECK(size_mm.z == bake_tests::near(65, 0.12));
     CHECK(liver().report.skin_volume_m3 > 0.5e-3);
     CHECK(liver().report.skin_volume_m3 < 0.6e-3);
     CHECK(skin.rest_m.size() >= 3000);
@@ -167,7 +169,7 @@ TEST_CASE("bake: footprints sum to one, mesh terms soften, and the file holds th
         for (auto i = s.row_start[v]; i < s.row_start[v + 1]; ++i) {
             sum += s.row_weight[i];
         }
-        CHECK(sum == doctest::Approx(1.0).epsilon(1e-12));
+        CHECK(sum == bake_tests::near(1.0, 1e-12));
         CHECK(s.mesh_term_n_m[v] >= 0.0);
         CHECK(s.mesh_term_t_m[v] >= 0.0);
     }
@@ -213,7 +215,7 @@ TEST_CASE("bake: the graded liver has the liver's skin on other tetrahedra") {
         }
     }
     REQUIRE(count > 10);
-    CHECK(sum_mm / count == doctest::Approx(spot.edge_mm).epsilon(0.15));
+    CHECK(sum_mm / count == bake_tests::near(spot.edge_mm, 0.15));
 }
 
 TEST_CASE("bake: a block of regular cells is the block, with its top as skin") {
@@ -254,7 +256,7 @@ TEST_CASE("bake program: the same recipe gives the same bytes, and nothing is le
     CHECK(a.size() > 10'000);
     CHECK(a == slurp(folder.path / "b.organ"));
     const auto report = nlohmann::json::parse(slurp(folder.path / "r.json"));
-    CHECK(report["volume_m3"].get<double>() == doctest::Approx(0.08 * 0.08 * 0.04));
+    CHECK(report["volume_m3"].get<double>() == bake_tests::near(0.08 * 0.08 * 0.04));
     CHECK(report["attempts"][0]["outcome"] == "done");
     const std::string obj = slurp(folder.path / "o.obj");
     CHECK(obj.find("o skin\n") == 0);

@@ -1,5 +1,7 @@
 #include "assets/bake/shape.h"
 
+#include "tests/bake/shapes_for_tests.h"
+
 #include <cmath>
 #include <doctest/doctest.h>
 #include <map>
@@ -14,7 +16,7 @@ TEST_CASE("lobed shape: one lobe is an ellipsoid of volume 4/3 pi a b c, tilted 
         const auto bounds = bake::lobed_bounds_m(shape);
         const auto s = bake::polygonise(bake::lobed_field(shape), bounds[0], bounds[1], 0.0015);
         const double exact = 4.0 / 3.0 * std::numbers::pi * 0.040 * 0.025 * 0.015;
-        CHECK(bake::volume_m3(s) == doctest::Approx(exact).epsilon(0.005));
+        CHECK(bake::volume_m3(s) == bake_tests::near(exact, 0.005));
     }
 }
 
@@ -32,7 +34,7 @@ TEST_CASE("lobed shape: a hollow takes its volume away") {
     const auto bounds = bake::lobed_bounds_m(shape);
     const auto s = bake::polygonise(bake::lobed_field(shape), bounds[0], bounds[1], 0.0015);
     const double exact = 4.0 / 3.0 * std::numbers::pi * (std::pow(0.030, 3) - std::pow(0.015, 3));
-    CHECK(bake::volume_m3(s) == doctest::Approx(exact).epsilon(0.005));
+    CHECK(bake::volume_m3(s) == bake_tests::near(exact, 0.005));
 }
 
 TEST_CASE("lobed shape: rounding where two balls meet only adds, and only near the seam") {
@@ -72,7 +74,7 @@ TEST_CASE("vault: one open sheet whose triangles face the middle") {
         CHECK(glm::dot(glm::cross(b - a, c - a), a) < 0.0);
     }
     for (const auto& p : s.point_m) { // on the ellipsoid
-        CHECK(glm::length(p / glm::dvec3{0.150, 0.125, 0.075}) == doctest::Approx(1.0));
+        CHECK(glm::length(p / glm::dvec3{0.150, 0.125, 0.075}) == bake_tests::near(1.0));
     }
 }
 
@@ -80,10 +82,10 @@ TEST_CASE("box: closed, with its volume; the top alone is one flat face") {
     const glm::dvec3 size{0.08, 0.06, 0.04};
     const auto s = bake::box_surface(size, 0.01);
     CHECK(bake::describe(bake::check_surface(s)).empty());
-    CHECK(bake::volume_m3(s) == doctest::Approx(size.x * size.y * size.z));
+    CHECK(bake::volume_m3(s) == bake_tests::near(size.x * size.y * size.z));
     const auto top = bake::box_top(size, 0.01);
-    CHECK(bake::area_m2(top) == doctest::Approx(size.x * size.y));
+    CHECK(bake::area_m2(top) == bake_tests::near(size.x * size.y));
     for (const auto& n : bake::vertex_normals(top)) {
-        CHECK(n.z == doctest::Approx(1.0));
+        CHECK(n.z == bake_tests::near(1.0));
     }
 }

@@ -5,7 +5,14 @@
 #include "assets/bake/polygonise.h"
 #include "assets/bake/shape.h"
 
+#include <doctest/doctest.h>
+
 namespace bake_tests {
+
+/// Relative, whatever the size: Approx alone allows epsilon x 1 too, more than a volume in m^3.
+inline doctest::Approx near(double value, double relative = 1e-9) {
+    return doctest::Approx(value).epsilon(relative).scale(0.0);
+}
 
 inline bake::Surface tetrahedron() {
     return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
