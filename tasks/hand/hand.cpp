@@ -146,8 +146,11 @@ void Hand::move_to(const HandSight& sight, const glm::dvec3& to_m, const glm::dv
 void Hand::follow_move(const HandSight& sight) {
     const auto t = static_cast<std::size_t>(tool_);
     const ToolObservation& tool = sight.now.tool[t];
-    if (glm::distance(goal_m_[t], tool.tip_m) < kLeash_m)
-        move_.time_s += kTick_s;
+    MinimumJerk on = move_;
+    on.time_s += kTick_s;
+    const double ahead_m = glm::distance(place_m(on), tool.tip_m);
+    if (ahead_m < kLeash_m || ahead_m < glm::distance(goal_m_[t], tool.tip_m))
+        move_ = on;
     goal_m_[t] = place_m(move_);
     const bool lifting = phase_ == Phase::lift;
     const bool stuck = phase_ticks_ * kTick_s > move_.duration_s + kGiveUp_s;

@@ -1,30 +1,32 @@
 #include "tasks/score/ideal_path.h"
 
+#include "relative.h"
+
 #include <cmath>
-#include <doctest/doctest.h>
 #include <glm/geometric.hpp>
 #include <rapidcheck.h>
 #include <vector>
 
 using glm::dvec3;
 using tasks::shortest_tour_m;
+using tasks::testing::relative;
 
 TEST_CASE("the shortest tour to one ball stops at its skin") {
     const std::vector<dvec3> ball{{0.03, 0.04, 0.0}};
-    CHECK(shortest_tour_m(dvec3{0.0}, ball, 0.003) == doctest::Approx(0.047));
+    CHECK(shortest_tour_m(dvec3{0.0}, ball, 0.003) == relative(0.047));
     CHECK(shortest_tour_m(dvec3{0.03, 0.04, 0.001}, ball, 0.003) == 0.0);
     CHECK(shortest_tour_m(dvec3{0.0}, {}, 0.003) == 0.0);
 }
 
 TEST_CASE("balls that the straight way meets cost nothing") {
     const std::vector<dvec3> balls{{0.02, 0.002, 0.0}, {0.04, -0.002, 0.0}, {0.06, 0.0, 0.0}};
-    CHECK(shortest_tour_m(dvec3{0.0}, balls, 0.003) == doctest::Approx(0.057).epsilon(1e-6));
+    CHECK(shortest_tour_m(dvec3{0.0}, balls, 0.003) == relative(0.057, 1e-6));
 }
 
 TEST_CASE("a ball of no size between two places is a mirror law") {
     // Out to the point and back: two straight legs.
     const std::vector<dvec3> balls{{0.03, 0.04, 0.0}, {0.06, 0.0, 0.0}};
-    CHECK(shortest_tour_m(dvec3{0.0}, balls, 0.0) == doctest::Approx(0.1));
+    CHECK(shortest_tour_m(dvec3{0.0}, balls, 0.0) == relative(0.1));
 }
 
 TEST_CASE("a detour over a symmetric ball touches its near pole") {
@@ -40,7 +42,7 @@ TEST_CASE("a detour over a symmetric ball touches its near pole") {
         best =
             std::min(best, glm::distance(dvec3{-a, 0.0, 0.0}, x) + glm::distance(x, balls[1]) - r);
     }
-    CHECK(got == doctest::Approx(best).epsilon(1e-6));
+    CHECK(got == relative(best, 1e-6));
 }
 
 TEST_CASE("no path through the balls is shorter than the shortest tour") {

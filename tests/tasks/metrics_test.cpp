@@ -1,9 +1,10 @@
 #include "tasks/score/metrics.h"
 
+#include "relative.h"
+
 #include "attempt.h"
 
 #include <cmath>
-#include <doctest/doctest.h>
 #include <functional>
 #include <numbers>
 
@@ -63,15 +64,14 @@ TEST_CASE("the path of a circle is its circumference, of the tool that drew it")
     // First movement: 1 mm of chord, arc 2 asin(1/40); the filter's gain at 0.25 Hz is 1 - 4e-7.
     const double start_s = std::ceil(4e3 / (2 * std::numbers::pi) * 2 * std::asin(1.0 / 40)) * 1e-3;
     const double arc_m = 0.02 * 2.0 * std::numbers::pi * (8.0 - start_s) / 4.0;
-    CHECK(value(s, "path_length.right") == doctest::Approx(arc_m).epsilon(1e-4));
-    CHECK(value(s, "path_length") == doctest::Approx(arc_m).epsilon(1e-4));
-    CHECK(value(s, "path_length.left") == doctest::Approx(0.0));
-    CHECK(value(s, "speed_mean.right") ==
-          doctest::Approx(0.02 * 2.0 * std::numbers::pi / 4.0).epsilon(1e-4));
+    CHECK(value(s, "path_length.right") == relative(arc_m, 1e-4));
+    CHECK(value(s, "path_length") == relative(arc_m, 1e-4));
+    CHECK(value(s, "path_length.left") == doctest::Approx(0.0).epsilon(1e-12));
+    CHECK(value(s, "speed_mean.right") == relative(0.02 * 2.0 * std::numbers::pi / 4.0, 1e-4));
     CHECK(value(s, "idle.right") == 0.0);
     CHECK(value(s, "idle.left") == 1.0);
-    CHECK(value(s, "idle") == doctest::Approx(2.0 / 3.0));
-    CHECK(value(s, "time") == doctest::Approx(8.0 - start_s));
+    CHECK(value(s, "idle") == relative(2.0 / 3.0));
+    CHECK(value(s, "time") == relative(8.0 - start_s));
     CHECK(find(s, "time")->first_tick == std::lround(start_s * 1e3));
     CHECK(find(s, "time")->last_tick == 8000);
 }
@@ -82,7 +82,7 @@ TEST_CASE("trembling above 10 Hz hardly adds to the path") {
         seen.tool[1].tip_m.z += 1e-4 * std::sin(2.0 * std::numbers::pi * 40.0 * t_s);
     });
     // Unfiltered it would be 8 s x 40 Hz x 4 x 0.1 mm = 128 mm of tremor on 250 mm of circle.
-    CHECK(value(s, "path_length") == doctest::Approx(0.2502).epsilon(2e-3));
+    CHECK(value(s, "path_length") == relative(0.2502, 2e-3));
 }
 
 TEST_CASE("LDLJ is the median over sub-movements") {
@@ -104,7 +104,7 @@ TEST_CASE("LDLJ is the median over sub-movements") {
         (T / 2.0 + (std::sin(2 * w * (1 - cut)) - std::sin(2 * w * cut)) / (4.0 * w));
     const double expected = -std::log(T * T * T / (peak * peak) * integral);
     // The low pass rounds the starts of the movement: 3 %.
-    CHECK(value(s, "ldlj.right") == doctest::Approx(expected).epsilon(0.03));
+    CHECK(value(s, "ldlj.right") == relative(expected, 0.03));
     CHECK(value(s, "ldlj") == value(s, "ldlj.right"));
     CHECK(find(s, "ldlj.left") == nullptr);
 }
@@ -117,14 +117,14 @@ TEST_CASE("constant force: mean, peak, impulse and time over the limit are what 
         if (t_s >= 1.25 && t_s < 1.75)
             touch(seen, Role::left, {0.03, 0.0, 0.0}, 3.0);
     });
-    CHECK(value(s, "force_mean.right") == doctest::Approx((2.5 * 0.5 + 0.5 * 1.5) / 2.0));
-    CHECK(value(s, "force_peak.right") == doctest::Approx(2.5));
-    CHECK(value(s, "force_peak") == doctest::Approx(3.0));
-    CHECK(value(s, "impulse.right") == doctest::Approx(2.5 * 0.5 + 0.5 * 1.5));
-    CHECK(value(s, "force_mean") == doctest::Approx((2.0 + 1.5) / 2.5));
-    CHECK(value(s, "over_force.right") == doctest::Approx(0.5));
-    CHECK(value(s, "over_force.left") == doctest::Approx(0.5));
-    CHECK(value(s, "over_force") == doctest::Approx(0.75)); // they overlap
+    CHECK(value(s, "force_mean.right") == relative((2.5 * 0.5 + 0.5 * 1.5) / 2.0));
+    CHECK(value(s, "force_peak.right") == relative(2.5));
+    CHECK(value(s, "force_peak") == relative(3.0));
+    CHECK(value(s, "impulse.right") == relative(2.5 * 0.5 + 0.5 * 1.5));
+    CHECK(value(s, "force_mean") == relative((2.0 + 1.5) / 2.5));
+    CHECK(value(s, "over_force.right") == relative(0.5));
+    CHECK(value(s, "over_force.left") == relative(0.5));
+    CHECK(value(s, "over_force") == relative(0.75)); // they overlap
     CHECK(value(s, "over_force_episodes") == 2.0);
     CHECK(value(s, "errors.over_force") == 2.0);
     CHECK(value(s, "errors") == value(s, "errors.over_force") + value(s, "errors.wrong_role") +
@@ -148,10 +148,9 @@ TEST_CASE("economy is the straight way to the ball over the way that was gone") 
         context);
     // From where it was at the first movement (26 ticks of 40 mm/s) to 3 mm before the target.
     const double first_m = 0.08 - 26 * 0.04e-3;
-    CHECK(value(s, "economy.right") ==
-          doctest::Approx((first_m - 0.003) / (first_m + 0.08)).epsilon(2e-3));
+    CHECK(value(s, "economy.right") == relative((first_m - 0.003) / (first_m + 0.08), 2e-3));
     CHECK(value(s, "economy.left") == 0.0); // had nothing to touch and touched nothing
-    CHECK(value(s, "economy") == doctest::Approx(value(s, "economy.right")).epsilon(1e-6));
+    CHECK(value(s, "economy") == relative(value(s, "economy.right"), 1e-6));
 }
 
 TEST_CASE("out of view is the share of the tool's time") {
@@ -160,9 +159,9 @@ TEST_CASE("out of view is the share of the tool's time") {
         if (t_s >= 3.026)
             seen.tool[1].tip_m.x = 5.0;
     });
-    CHECK(value(s, "out_of_view.right") == doctest::Approx(0.25));
+    CHECK(value(s, "out_of_view.right") == relative(0.25));
     CHECK(value(s, "out_of_view.left") == 0.0);
-    CHECK(value(s, "out_of_view") == doctest::Approx(0.25 / 3.0));
+    CHECK(value(s, "out_of_view") == relative(0.25 / 3.0));
 }
 
 TEST_CASE("nothing recorded, nothing moved, nothing touched: defined values, no NaN") {
@@ -198,7 +197,7 @@ TEST_CASE("an absent tool has no metrics of its own and adds nothing") {
         seen.tool[2].touching = true;
     });
     CHECK(find(s, "path_length.assist") == nullptr);
-    CHECK(value(s, "path_length") == doctest::Approx(value(s, "path_length.right")));
+    CHECK(value(s, "path_length") == relative(value(s, "path_length.right")));
     CHECK(value(s, "force_peak") == 0.0);
     CHECK(value(s, "over_force") == 0.0);
 }

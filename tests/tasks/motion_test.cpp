@@ -1,10 +1,12 @@
 #include "tasks/hand/motion.h"
 
+#include "relative.h"
+
 #include <algorithm>
 #include <cmath>
-#include <doctest/doctest.h>
 #include <glm/geometric.hpp>
 
+using tasks::testing::relative;
 using namespace tasks;
 
 namespace {
@@ -32,7 +34,7 @@ std::vector<double> pressed(double k_npm, double delay_s, double gap_m, double w
 TEST_CASE("a planned movement starts and ends at rest and peaks at the speed asked for") {
     const glm::dvec3 from{0.01, 0.02, 0.0}, to{0.01, 0.02, 0.05};
     MinimumJerk move = plan_move(from, to, 0.05);
-    CHECK(move.duration_s == doctest::Approx(1.875 * 0.05 / 0.05));
+    CHECK(move.duration_s == relative(1.875 * 0.05 / 0.05));
     double peak_mps = 0.0;
     glm::dvec3 before = place_m(move);
     CHECK(before == from);
@@ -41,7 +43,7 @@ TEST_CASE("a planned movement starts and ends at rest and peaks at the speed ask
         peak_mps = std::max(peak_mps, glm::distance(place_m(move), before) / kTick_s);
         before = place_m(move);
     }
-    CHECK(peak_mps == doctest::Approx(0.05).epsilon(1e-3));
+    CHECK(peak_mps == relative(0.05, 1e-3));
     CHECK(glm::distance(before, to) < 1e-12);
 }
 
@@ -64,7 +66,7 @@ TEST_CASE("tremor has the length asked for and lives between 3 and 12 Hz") {
         square += glm::dot(y, y);
         v = y.x;
     }
-    CHECK(std::sqrt(square / n) == doctest::Approx(50e-6).epsilon(0.03));
+    CHECK(std::sqrt(square / n) == relative(50e-6, 0.03));
     // The filter's own magnitude as the independent number: |H|^2 at f over |H|^2 at 6 Hz of an
     // analogue band pass, 1 / (1 + ((f/6 - 6/f) 6/9)^2), from averaged periodograms of 1 s.
     const auto power = [&](double f_hz) {
@@ -98,7 +100,7 @@ TEST_CASE("a press settles at the wanted force on any tissue without overshootin
             const auto force = pressed(k_npm, delay_s, 5e-3, wanted_n, speed_mps);
             CAPTURE(k_npm);
             CAPTURE(delay_s);
-            CHECK(force.back() == doctest::Approx(wanted_n).epsilon(0.02));
+            CHECK(force.back() == relative(wanted_n, 0.02));
             // Until the first force is felt the goal goes on for the delay and stops in speed/0.15
             // s: that way, through grip and tissue in series, is what cannot be helped.
             const double series_npm = k_npm * 400.0 / (k_npm + 400.0);
@@ -114,7 +116,7 @@ TEST_CASE("a press in the air goes on at its speed") {
     for (int i = 0; i < 2000; ++i)
         advance(press, 0.0);
     // speed * time, less half the time it takes to get up to speed
-    CHECK(press.advanced_m == doctest::Approx(0.01 * (2.0 - 0.5 * 0.01 / 0.15)).epsilon(1e-3));
+    CHECK(press.advanced_m == relative(0.01 * (2.0 - 0.5 * 0.01 / 0.15), 1e-3));
     CHECK(press.contact_ticks == 0);
 }
 
@@ -130,6 +132,6 @@ TEST_CASE("normal draws have mean 0, variance 1 and normal tails") {
         beyond += std::abs(x) > 1.96;
     }
     CHECK(std::abs(sum / n) < 4.0 / std::sqrt(double(n)));
-    CHECK(square / n == doctest::Approx(1.0).epsilon(0.02));
-    CHECK(double(beyond) / n == doctest::Approx(0.05).epsilon(0.06));
+    CHECK(square / n == relative(1.0, 0.02));
+    CHECK(double(beyond) / n == relative(0.05, 0.06));
 }

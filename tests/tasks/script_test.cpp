@@ -1,8 +1,9 @@
 #include "tasks/hand/script.h"
 
+#include "relative.h"
+
 #include "toy_tissue.h"
 
-#include <doctest/doctest.h>
 #include <rapidcheck.h>
 #include <stdexcept>
 
@@ -73,21 +74,21 @@ seconds = 1
     ToyRig rig = make_rig(nine_points());
     ScriptHand hand(parse_script(text, "s.toml"), rig.exercise, rig.start_tip_m);
     perform(rig, hand, 1.6); // move is over, lag of the toy included
-    CHECK(rig.now.tool[1].tip_m.x == doctest::Approx(0.030).epsilon(0.01));
-    CHECK(rig.now.tool[1].tip_m.y == doctest::Approx(0.020).epsilon(0.01));
+    CHECK(rig.now.tool[1].tip_m.x == relative(0.030, 0.01));
+    CHECK(rig.now.tool[1].tip_m.y == relative(0.020, 0.01));
     double force_n = 0.0;
     while (force_n < 0.57)
         perform(rig, hand, now_s(rig) + 0.0005), force_n = rig.now.tool[1].force_n.z;
     const double pressed_s = now_s(rig);
     CHECK(pressed_s < 1.5 + 5.0);
     perform(rig, hand, pressed_s + 1.9);
-    CHECK(rig.now.tool[1].force_n.z == doctest::Approx(0.6).epsilon(0.03));
+    CHECK(rig.now.tool[1].force_n.z == relative(0.6, 0.03));
     perform(rig, hand, pressed_s + 4.9);
-    CHECK(rig.now.tool[1].force_n.z == doctest::Approx(0.3).epsilon(0.05));
+    CHECK(rig.now.tool[1].force_n.z == relative(0.3, 0.05));
     const double before_m = rig.now.tool[1].tip_m.z;
     perform(rig, hand, pressed_s + 6.5);
     // 15 mm of the goal; the grip gives back what 0.3 N had bent it
-    CHECK(rig.now.tool[1].tip_m.z - before_m == doctest::Approx(0.015 - 0.3 / 400.0).epsilon(0.05));
+    CHECK(rig.now.tool[1].tip_m.z - before_m == relative(0.015 - 0.3 / 400.0, 0.05));
     CHECK(rig.now.tool[0].tip_m == rig.start_tip_m[0]);
 }
 
@@ -99,7 +100,7 @@ TEST_CASE("a press that meets nothing ends with its time and stops within 40 mm"
                                  "s.toml"),
                     rig.exercise, rig.start_tip_m);
     perform(rig, hand, 20.0);
-    CHECK(rig.now.tool[1].tip_m.z == doctest::Approx(0.16).epsilon(1e-3));
+    CHECK(rig.now.tool[1].tip_m.z == relative(0.16, 1e-3));
 }
 
 TEST_CASE("a mistake in a script is named by file, line, key, value and what is accepted") {

@@ -1,11 +1,13 @@
 #include "tasks/exercise/touch_points.h"
 
-#include <doctest/doctest.h>
+#include "relative.h"
+
 #include <fstream>
 #include <rapidcheck.h>
 #include <sstream>
 
 using tasks::parse_touch_points;
+using tasks::testing::relative;
 
 namespace {
 
@@ -51,7 +53,7 @@ TEST_CASE("an exercise file becomes the exercise, millimetres become metres") {
     REQUIRE(exercise.target.size() == 2);
     CHECK(exercise.target[0].role == tasks::Role::left);
     CHECK(exercise.target[1].role == tasks::Role::assist);
-    CHECK(exercise.target[0].at_m.y == doctest::Approx(2.5e-3));
+    CHECK(exercise.target[0].at_m.y == relative(2.5e-3));
 }
 
 TEST_CASE("a mistake in an exercise file is named by file, line, key, value and what is accepted") {
