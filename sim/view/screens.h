@@ -41,7 +41,7 @@ struct ScoreMetric {
     bool felt = true;     // false: reads "not felt"
     int decimals = 2;
     Verdict verdict = Verdict::none; // against a level, if one is set
-    std::string level;               // "< 60 s", empty: no level
+    std::string level{};             // "< 60 s", empty: no level
 };
 
 struct ScoreError {

@@ -1,0 +1,248 @@
+// sim/view/pages.cpp
+// One panel in the middle of the window per page, never larger than the window: it scrolls.
+#include "sim/view/pages.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace view {
+namespace {
+
+constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                                    ImGuiWindowFlags_NoCollapse;
+
+/// A panel in the middle, `wide` and `tall` in body heights, at most the window less a margin.
+void begin_panel(const char* name, float wide, float tall, bool fresh) {
+    const ImVec2 window = ImGui::GetIO().DisplaySize;
+    const float em = ImGui::GetFontSize();
+    const ImVec2 size(std::min(wide * em, window.x - 2.0F * em),
+                      std::min(tall * em, window.y - 4.5F * em));
+    ImGui::SetNextWindowPos({0.5F * window.x, 0.5F * window.y - 0.4F * em}, ImGuiCond_Always,
+                            {0.5F, 0.5F});
+    ImGui::SetNextWindowSize(size);
+    if (fresh)
+        ImGui::SetNextWindowFocus();
+    ImGui::Begin(name, nullptr, kPanel);
+}
+
+void heading(const Fonts& fonts, const std::string& text) {
+    ImGui::PushFont(fonts.title);
+    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::PopFont();
+}
+
+void quiet(const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ink::quiet);
+    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::PopStyleColor();
+}
+
+/// A large button; `first` takes the keyboard when the page appears.
+bool button(const Fonts& fonts, const char* label, bool first, float wide = 11.0F) {
+    const float em = ImGui::GetFontSize();
+    ImGui::PushFont(fonts.large);
+    const bool pressed = ImGui::Button(label, {wide * em, 0.0F});
+    ImGui::PopFont();
+    if (first)
+        ImGui::SetItemDefaultFocus();
+    return pressed;
+}
+
+bool exercise_entry(const Fonts& fonts, const MenuExercise& exercise, int index) {
+    const float em = ImGui::GetFontSize();
+    ImGui::PushID(index);
+    const ImVec2 at = ImGui::GetCursorPos();
+    const bool pressed = ImGui::Button("##open", {-1.0F, 4.6F * em});
+    if (index == 0)
+        ImGui::SetItemDefaultFocus();
+    const ImVec2 after = ImGui::GetCursorPos();
+    ImGui::SetCursorPos({at.x + em, at.y + 0.5F * em});
+    ImGui::PushFont(fonts.large);
+    ImGui::TextUnformatted(exercise.title.c_str());
+    ImGui::PopFont();
+    ImGui::SetCursorPos({at.x + em, at.y + 2.0F * em});
+    ImGui::TextUnformatted(exercise.summary.c_str());
+    ImGui::SetCursorPos({at.x + em, at.y + 3.2F * em});
+    ImGui::TextDisabled("%s", exercise.hands.c_str());
+    ImGui::SetCursorPos(after);
+    ImGui::PopID();
+    return pressed;
+}
+
+void trainee_choice(const MenuModel& menu, UserInput& input) {
+    const auto name = [&](int i) {
+        return i < 0 ? "nobody (kept without a name)" : menu.trainees[i].c_str();
+    };
+    const int chosen = menu.trainee < static_cast<int>(menu.trainees.size()) ? menu.trainee : -1;
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted("Trainee");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-1.0F);
+    if (!ImGui::BeginCombo("##trainee", name(chosen)))
+        return;
+    for (int i = -1; i < static_cast<int>(menu.trainees.size()); ++i) {
+        ImGui::PushID(i);
+        if (ImGui::Selectable(name(i), i == chosen)) {
+            input.action = Action::choose_trainee;
+            input.index = i;
+        }
+        ImGui::PopID();
+    }
+    ImGui::EndCombo();
+}
+
+void draw_menu(const MenuModel& menu, const Fonts& fonts, bool fresh, UserInput& input) {
+    begin_panel("menu", 44.0F, 38.0F, fresh);
+    heading(fonts, "Trocar");
+    quiet("Laparoscopic basic skills. For training, not for credentialing. Not a medical device.");
+    ImGui::Spacing();
+    trainee_choice(menu, input);
+    ImGui::Spacing();
+    for (int i = 0; i < static_cast<int>(menu.exercises.size()); ++i)
+        if (exercise_entry(fonts, menu.exercises[i], i)) {
+            input.action = Action::select;
+            input.index = i;
+        }
+    ImGui::Spacing();
+    if (!menu.devices.empty())
+        quiet(menu.devices);
+    if (button(fonts, "Quit", menu.exercises.empty(), 8.0F))
+        input.action = Action::quit;
+    ImGui::SameLine();
+    quiet("Arrow keys and Enter choose.  Ctrl + and Ctrl - change the size of the text.");
+    ImGui::End();
+}
+
+void draw_card(const CardModel& card, const Fonts& fonts, bool fresh, UserInput& input) {
+    begin_panel("card", 42.0F, 28.0F, fresh);
+    heading(fonts, card.title);
+    ImGui::Spacing();
+    const float em = ImGui::GetFontSize();
+    ImGui::BeginChild("words", {0.0F, -3.4F * em});
+    ImGui::PushFont(fonts.large);
+    ImGui::TextWrapped("%s", card.text.c_str());
+    ImGui::PopFont();
+    ImGui::Spacing();
+    for (const Role role : {Role::left, Role::right, Role::assist}) {
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        draw_badge(*ImGui::GetWindowDrawList(), {at.x + 0.9F * em, at.y + 0.8F * em}, 0.72F * em,
+                   role, role_letter(role));
+        ImGui::Dummy({1.8F * em, 1.5F * em});
+        ImGui::SameLine();
+        ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.3F * em);
+        ImGui::Text("%s tool", role_word(role));
+        if (role != Role::assist)
+            ImGui::SameLine(0.0F, 2.0F * em);
+    }
+    ImGui::Spacing();
+    for (const std::string& limit : card.limits)
+        ImGui::BulletText("%s", limit.c_str());
+    ImGui::EndChild();
+    if (button(fonts, "Start", true))
+        input.action = Action::start;
+    ImGui::SameLine();
+    if (card.demo_available) {
+        if (button(fonts, "Demonstration (D)", false, 15.0F))
+            input.action = Action::demo;
+        ImGui::SameLine();
+    }
+    if (button(fonts, "Back (Esc)", false))
+        input.action = Action::back;
+    ImGui::End();
+}
+
+void draw_pause(const Fonts& fonts, bool fresh, UserInput& input) {
+    begin_panel("paused", 30.0F, 17.0F, fresh);
+    heading(fonts, "Paused");
+    ImGui::TextWrapped("Every device is limp. The pause is kept in the logbook.");
+    ImGui::Spacing();
+    if (button(fonts, "Go on (P)", true, 18.0F))
+        input.action = Action::resume;
+    if (button(fonts, "Abandon (Backspace)", false, 18.0F))
+        input.action = Action::abandon;
+    ImGui::End();
+}
+
+void metric_row(const ScoreMetric& metric) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(metric.name.c_str());
+    ImGui::TableNextColumn();
+    if (metric.felt)
+        ImGui::TextUnformatted(
+            fmt::format("{:.{}f} {}", metric.value, metric.decimals, metric.unit).c_str());
+    else
+        ImGui::TextDisabled("not felt");
+    ImGui::TableNextColumn();
+    if (metric.directed)
+        ImGui::TextDisabled(metric.lower_is_better ? "less is better" : "more is better");
+    ImGui::TableNextColumn();
+    if (metric.verdict == Verdict::none) {
+        ImGui::TextDisabled("%s", metric.level.c_str());
+        return;
+    }
+    const bool good = metric.verdict == Verdict::good;
+    ImGui::PushStyleColor(ImGuiCol_Text, good ? ink::good : ink::bad);
+    ImGui::Text("%s  %s", good ? "reached" : "missed", metric.level.c_str());
+    ImGui::PopStyleColor();
+}
+
+void draw_score(const ScoreModel& score, const Fonts& fonts, bool fresh, UserInput& input) {
+    begin_panel("score", 52.0F, 40.0F, fresh);
+    heading(fonts, score.title);
+    ImGui::PushStyleColor(ImGuiCol_Text, score.completed ? ink::good : ink::warn);
+    ImGui::TextUnformatted(score.completed ? "Completed." : "Not completed.");
+    ImGui::PopStyleColor();
+    if (!score.valid) {
+        ImGui::PushStyleColor(ImGuiCol_Text, ink::bad);
+        ImGui::TextWrapped("Not valid: the rig was at fault, not the hands.");
+        for (const std::string& reason : score.invalid_reasons)
+            ImGui::BulletText("%s", reason.c_str());
+        ImGui::PopStyleColor();
+    }
+    const float em = ImGui::GetFontSize();
+    ImGui::BeginChild("numbers", {0.0F, -5.0F * em});
+    constexpr ImGuiTableFlags kRows = ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit;
+    if (ImGui::BeginTable("metrics", 4, kRows)) {
+        for (const float wide : {15.0F, 9.0F, 9.0F, 13.0F})
+            ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, wide * em);
+        for (const ScoreMetric& metric : score.metrics)
+            metric_row(metric);
+        ImGui::EndTable();
+    }
+    ImGui::Spacing();
+    ImGui::Text("Errors: %d", static_cast<int>(score.errors.size()));
+    for (const ScoreError& error : score.errors)
+        ImGui::BulletText("%.1f s  %s", error.time_s, error.text.c_str());
+    ImGui::EndChild();
+    quiet(score.saved.empty() ? "For training, not for credentialing."
+                              : score.saved + "  For training, not for credentialing.");
+    if (button(fonts, "Menu", true))
+        input.action = Action::back;
+    ImGui::SameLine();
+    if (button(fonts, "Again", false))
+        input.action = Action::start;
+    ImGui::End();
+}
+
+} // namespace
+
+void draw_page(const Screens& screens, const Fonts& fonts, bool fresh, UserInput& input) {
+    switch (screens.screen) {
+    case Screen::menu:
+        return draw_menu(screens.menu, fonts, fresh, input);
+    case Screen::card:
+        return draw_card(screens.card, fonts, fresh, input);
+    case Screen::paused:
+        return draw_pause(fonts, fresh, input);
+    case Screen::score:
+        return draw_score(screens.score, fonts, fresh, input);
+    case Screen::run:
+    case Screen::demo:
+        return;
+    }
+}
+
+} // namespace view

@@ -1,0 +1,15 @@
+// sim/view/shaders.h
+// The shader texts, GLSL 3.30. Compiled once by picture.cpp in the render thread.
+#pragma once
+
+namespace view::shaders {
+
+extern const char* const prelude; // version, the lamp and the tone curve: before every shader
+extern const char* const tissue_vertex;
+extern const char* const tissue_fragment;
+extern const char* const tool_vertex;
+extern const char* const tool_fragment;
+extern const char* const target_vertex;
+extern const char* const target_fragment;
+
+} // namespace view::shaders
