@@ -8,6 +8,7 @@
 //   haptic loop, 1 kHz     -- ticks --->  recorder              every value, in order
 //   tissue loop            -- steps --->  recorder              every value, in order
 //   recorder               -- progress->  hands, render         newest wins
+//   render loop            -- pointer ->  haptic loop           newest wins
 //   render loop            -- marks --->  recorder              every value, in order
 //   anyone                 -- flags --->  the loops             single words
 #pragma once
@@ -69,6 +70,12 @@ struct ProgressNow {
     int errors = 0;
 };
 
+/// Where the person at mouse and keyboard wants the tips.
+struct PointerGoals {
+    std::array<glm::dvec3, kTools> tip_m{};
+    std::array<double, kTools> jaw{};
+};
+
 struct Exchange {
     NewestBuffer<TissueAnswer> answers;
     NewestBuffer<ToolsNow> tools;
@@ -76,6 +83,7 @@ struct Exchange {
     NewestBuffer<SurfaceNow> surface;
     NewestBuffer<ProgressNow> progress;      // recorder -> hands
     NewestBuffer<ProgressNow> progress_seen; // recorder -> render
+    NewestBuffer<PointerGoals> pointer;      // render -> haptic
     SpscRing<tasks::TickTrace, 1 << 13> ticks;
     SpscRing<tasks::StepTrace, 1 << 11> steps;
     SpscRing<tasks::Event, 1 << 6> marks; // pause, resume, abandon: what people did

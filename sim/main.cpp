@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     app.set_help_all_flag("--help-all", "Help of every command");
     int exit_code = 0;
+    sim::add_train(app, exit_code);
     sim::add_run(app, exit_code);
     sim::add_replay(app, exit_code);
     sim::add_rescore(app, exit_code);

@@ -76,7 +76,10 @@ glm::dvec3 finite_or_zero(const glm::dvec3& force_n, std::uint64_t& counter) noe
 // From the force on the tip to the force that the hand may feel, last limits included.
 void send_force(Instrument& instrument, const haptics::ShaftPose& shaft, const glm::dvec3& tip_n,
                 haptics::DeviceFault fault, bool zero, double& felt_share) noexcept {
-    instrument.limit_state.enabled = instrument.limit_state.enabled && !zero;
+    if (zero)
+        instrument.limit_state.enabled = false;
+    else if (!instrument.limit_state.enabled)
+        haptics::resume(instrument.limit_state); // after Esc: back on the ramp
     const glm::dvec3 wanted = haptics::force_at_handle(shaft, tip_n);
     const glm::dvec3 sent =
         haptics::limit_force(instrument.limit_state, instrument.limits, wanted, fault);

@@ -16,6 +16,27 @@ Crew make_crew(const Scene& scene, HapticRig& rig) {
     return crew;
 }
 
+Crew make_mouse_crew(HapticRig& rig) {
+    Crew crew;
+    for (int i = 0; i < kTools; ++i) {
+        crew.mouse[i] = std::make_unique<haptics::MouseDevice>(glm::dvec3{0.0});
+        rig.instrument[i].device = crew.mouse[i].get();
+        rig.instrument[i].metres_per_count = crew.mouse[i]->info().metres_per_count;
+    }
+    return crew;
+}
+
+void move_mouse_crew(Crew& crew, const HapticRig& rig, const PointerGoals& goals) noexcept {
+    for (int i = 0; i < kTools; ++i) {
+        if (!crew.mouse[i])
+            continue;
+        const Instrument& instrument = rig.instrument[i];
+        crew.mouse[i]->set_goal(haptics::handle_for_tip(instrument.trocar, goals.tip_m[i]) -
+                                instrument.origin_m);
+        crew.mouse[i]->set_jaw(goals.jaw[i]);
+    }
+}
+
 void crew_tick(Crew& crew, const HapticRig& rig, const tasks::HandSight& sight) {
     std::visit(
         [&](auto& hand) {
@@ -32,7 +53,8 @@ void crew_tick(Crew& crew, const HapticRig& rig, const tasks::HandSight& sight) 
         },
         crew.hand);
     for (const auto& device : crew.device)
-        device->step(kTick_s);
+        if (device)
+            device->step(kTick_s);
 }
 
 } // namespace sim

@@ -45,6 +45,8 @@ void haptic_thread(Session& session, Counts& counts) {
         }
         if (const ProgressNow* news = exchange.progress.fetch())
             progress = *news;
+        if (const PointerGoals* goals = exchange.pointer.fetch())
+            move_mouse_crew(session.crew, session.haptics, *goals);
         crew_tick(session.crew, session.haptics, sight);
         const auto start = Clock::now();
         haptic_tick(session.haptics, exchange, trace);

@@ -60,6 +60,7 @@ std::unique_ptr<Session> build(const RunOptions& options, LoadedScene scene,
         options.max_seconds > 0.0 ? options.max_seconds : session->exercise.time_limit_s;
     session->max_ticks = static_cast<std::int64_t>(limit / kTick_s);
     place_targets(session->tissue, session->haptics.target_um);
+    session->rest_target_um = session->haptics.target_um;
     session->haptics.targets = static_cast<int>(session->tissue.targets.size());
     return session;
 }

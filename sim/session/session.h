@@ -31,6 +31,7 @@ struct Session {
     tasks::TouchPoints exercise;
     std::string exercise_text;
     std::vector<tasks::Target> rest_targets;
+    TargetPlaces rest_target_um{};
     TissueRig tissue;
     HapticRig haptics;
     Crew crew;

@@ -1,0 +1,39 @@
+// sim/command/stage.h
+// A running session as the window shows it: fills a ViewFrame from what crosses the exchange, and
+// turns mouse and keys into places for the tips. Called from the render thread only.
+#pragma once
+
+#include "sim/session/session.h"
+#include "sim/view/window.h"
+
+namespace sim {
+
+class Stage {
+  public:
+    /// `session` must outlive the stage. `by_hand`: mouse and keys move the tools.
+    Stage(const Session& session, bool by_hand, int first_surface_id);
+
+    /// The world as the newest messages have it.
+    const view::ViewFrame& frame(Exchange& exchange);
+
+    /// Moves the active tool's goal by what the person did since the last frame.
+    void steer(const view::UserInput& input, Exchange& exchange);
+
+  private:
+    void show_tools(const ToolsNow& now);
+    void show_targets(const TargetPlaces& target_um, const ProgressNow& progress);
+
+    const Session& session_;
+    bool by_hand_;
+    view::ViewFrame frame_;
+    std::vector<std::vector<glm::vec3>> rest_m_;
+    std::vector<std::vector<glm::vec3>> rest_normal_;
+    PointerGoals goals_;
+    int active_ = 1; // the right hand's tool
+    ProgressNow progress_;
+};
+
+/// Score screen for an outcome.
+view::ScoreModel score_model(const Attempt::Outcome& outcome, const std::string& saved);
+
+} // namespace sim

@@ -1,0 +1,218 @@
+// sim/command/train.cpp
+// trocar train: the window. Menu, instruction card, the expert's demonstration, the attempt, the
+// score. The loops run on their own threads; this one draws and never makes them wait.
+#include "sim/command/commands.h"
+#include "sim/command/stage.h"
+#include "sim/io/files.h"
+#include "sim/io/guard.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace sim {
+namespace {
+
+struct TrainArguments {
+    std::string exercise, scene = "basic", trainee, log, shots;
+    double text_scale = 1.0, shot_seconds = 4.0;
+    int width = 1280, height = 720;
+};
+
+class Trainer {
+  public:
+    explicit Trainer(const TrainArguments& a)
+        : a_(a), window_({.width_px = a.width, .height_px = a.height, .text_scale = a.text_scale}),
+          logbook_(a.log.empty() ? (user_data_dir() / "station.db").string() : a.log),
+          log_path_(a.log.empty() ? (user_data_dir() / "station.db").string() : a.log) {
+        for (const auto& entry : std::filesystem::directory_iterator(
+                 find_asset("exercises", "touch-points").parent_path())) {
+            if (entry.path().extension() == ".toml")
+                names_.push_back(entry.path().stem().string());
+        }
+        std::sort(names_.begin(), names_.end());
+        for (const std::string& name : names_) {
+            const auto path = find_asset("exercises", name);
+            exercises_.push_back(tasks::parse_touch_points(read_text(path), path.string()));
+            screens_.menu.exercises.push_back(
+                {.title = exercises_.back().title,
+                 .hands = "left, right, assist",
+                 .summary = fmt::format("{} targets", exercises_.back().target.size())});
+        }
+        for (const auto& t : logbook_.trainees()) {
+            trainee_ids_.push_back(t.id);
+            screens_.menu.trainees.push_back(t.name);
+        }
+        screens_.menu.devices =
+            "Mouse and keyboard. Haptic drivers: none was ever run on hardware.";
+        if (!a.exercise.empty())
+            show_card(index_of(a.exercise));
+    }
+
+    void run() {
+        while (!quit_ && !asked_to_stop()) {
+            const view::UserInput input = window_.draw(idle_, screens_);
+            using view::Action;
+            if (input.action == Action::quit)
+                quit_ = true;
+            else if (input.action == Action::choose_trainee)
+                screens_.menu.trainee = input.index;
+            else if (input.action == Action::select)
+                show_card(input.index);
+            else if (input.action == Action::back || input.zero_forces)
+                screens_.screen = view::Screen::menu;
+            else if (input.action == Action::demo)
+                perform(true);
+            else if (input.action == Action::start)
+                perform(false);
+        }
+    }
+
+    /// Pictures of every screen, for the README and for tests: no person needed.
+    void take_pictures() {
+        picture("menu");
+        show_card(0);
+        picture("card");
+        perform(true);
+        picture("score");
+    }
+
+  private:
+    int index_of(const std::string& name) const {
+        const auto found = std::find(names_.begin(), names_.end(), name);
+        if (found == names_.end())
+            throw std::invalid_argument(fmt::format("exercise \"{}\" is unknown", name));
+        return static_cast<int>(found - names_.begin());
+    }
+
+    void picture(const std::string& name) {
+        for (int i = 0; i < 3; ++i)
+            window_.draw(idle_, screens_);
+        window_.screenshot((std::filesystem::path(a_.shots) / (name + ".png")).string());
+    }
+
+    void show_card(int index) {
+        chosen_ = std::clamp(index, 0, static_cast<int>(exercises_.size()) - 1);
+        const tasks::TouchPoints& e = exercises_[chosen_];
+        screens_.screen = view::Screen::card;
+        screens_.card = {
+            .title = e.title,
+            .text = e.card,
+            .limits = {fmt::format("Force {:.1f} to {:.1f} N, error above {:.1f} N", e.force_min_n,
+                                   e.force_max_n, e.force_limit_n),
+                       fmt::format("Hold {:.1f} s within {:.0f} mm", e.hold_s, 1e3 * e.radius_m),
+                       fmt::format("Time limit {:.0f} s", e.time_limit_s)}};
+    }
+
+    // One attempt, by the person or as the expert's demonstration, with its own threads.
+    void perform(bool demo) {
+        RunOptions options;
+        options.exercise = names_[chosen_];
+        options.scene = a_.scene;
+        options.hands = demo ? "expert" : "person";
+        options.forces_on = demo; // a mouse does not feel
+        if (screens_.menu.trainee >= 0)
+            options.trainee = trainee_ids_[screens_.menu.trainee];
+        const std::unique_ptr<Session> session = make_session(options, demo);
+        if (!demo)
+            session->crew = make_mouse_crew(session->haptics);
+        session->exchange->surface_wanted = true;
+        Stage stage(*session, !demo, next_surface_id_);
+        next_surface_id_ += static_cast<int>(session->tissue.bodies.size());
+
+        std::int64_t id = 0;
+        if (!demo) {
+            tasks::AttemptRow row = attempt_row(*session, true);
+            row.session = logbook_.add_session(session_row("mouse"));
+            id = logbook_.begin_attempt(row);
+        }
+        screens_.screen = demo ? view::Screen::demo : view::Screen::run;
+        const Attempt::Outcome outcome =
+            run_realtime(*session, demo ? nullptr : &logbook_, id, 0.0,
+                         [&](Exchange& exchange) { return one_frame(stage, exchange, demo); });
+        screens_.score =
+            score_model(outcome, demo ? "" : fmt::format("attempt {} in {}", id, log_path_));
+        if (demo)
+            screens_.score.title += " (demonstration)";
+        screens_.screen = view::Screen::score;
+    }
+
+    bool one_frame(Stage& stage, Exchange& exchange, bool demo) {
+        const view::UserInput input = window_.draw(stage.frame(exchange), screens_);
+        if (input.zero_forces)
+            exchange.zero_forces = true;
+        using view::Action;
+        if (input.action == Action::forces_on)
+            exchange.zero_forces = false;
+        if (input.action == Action::pause || input.action == Action::resume) {
+            const bool pause = input.action == Action::pause;
+            exchange.paused = pause;
+            exchange.marks.push(
+                {.kind = pause ? tasks::EventKind::paused : tasks::EventKind::resumed});
+            screens_.screen = pause  ? view::Screen::paused
+                              : demo ? view::Screen::demo
+                                     : view::Screen::run;
+        }
+        if (!a_.shots.empty())
+            return shoot(exchange);
+        const bool leave =
+            input.action == Action::abandon || input.action == Action::quit || asked_to_stop();
+        if (leave) {
+            exchange.marks.push({.kind = tasks::EventKind::abandoned});
+            quit_ = input.action == Action::quit;
+            return false;
+        }
+        if (screens_.screen != view::Screen::paused)
+            stage.steer(input, exchange);
+        return true;
+    }
+
+    // With --screenshots: three moments of the demonstration, then on.
+    bool shoot(Exchange& exchange) {
+        const double now_s = double(exchange.tools_seen.latest().tick) * kTick_s;
+        if (now_s < a_.shot_seconds * (shots_ + 1))
+            return true;
+        ++shots_;
+        window_.screenshot(
+            (std::filesystem::path(a_.shots) / fmt::format("exercise-{}.png", shots_)).string());
+        return shots_ < 3;
+    }
+
+    TrainArguments a_;
+    view::Window window_;
+    tasks::Logbook logbook_;
+    std::string log_path_;
+    view::Screens screens_;
+    view::ViewFrame idle_;
+    std::vector<std::string> names_, trainee_ids_;
+    std::vector<tasks::TouchPoints> exercises_;
+    int chosen_ = 0, next_surface_id_ = 1, shots_ = 0;
+    bool quit_ = false;
+};
+
+} // namespace
+
+void add_train(CLI::App& app, int&) {
+    auto a = std::make_shared<TrainArguments>();
+    CLI::App* c = app.add_subcommand("train", "The window: pick an exercise, train, get a score");
+    c->add_option("exercise", a->exercise, "Go straight to this exercise's card");
+    c->add_option("--scene", a->scene, "Name or file of a scene");
+    c->add_option("--log", a->log, "Logbook; default: the user's data directory");
+    c->add_option("--text-scale", a->text_scale, "Size of all text")->check(CLI::Range(1.0, 2.0));
+    c->add_option("--width", a->width, "Of the window, pixels")->check(CLI::Range(800, 7680));
+    c->add_option("--height", a->height, "Of the window, pixels")->check(CLI::Range(600, 4320));
+    c->add_option("--screenshots", a->shots, "Folder: take pictures of every screen and leave");
+    c->add_option("--shot-seconds", a->shot_seconds, "Between the exercise's pictures");
+    c->callback([a] {
+        install_signal_guard();
+        if (!a->shots.empty())
+            std::filesystem::create_directories(a->shots);
+        Trainer trainer(*a);
+        if (a->shots.empty())
+            trainer.run();
+        else
+            trainer.take_pictures();
+    });
+}
+
+} // namespace sim
