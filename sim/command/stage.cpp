@@ -124,7 +124,7 @@ const view::ViewFrame& Stage::frame(Exchange& exchange) {
     show_targets(surface.step >= 0 ? surface.target_um : session_.rest_target_um, progress_);
     frame_.errors = progress_.errors;
     frame_.forces_on = !exchange.zero_forces.load();
-    frame_.recorder = view::Recorder::recording;
+    frame_.recorder = session_.recorded ? view::Recorder::recording : view::Recorder::off;
     frame_.messages = {"Not a medical device"};
     if (by_hand_)
         frame_.messages.push_back("Mouse and keyboard: forces are drawn, not felt");

@@ -125,6 +125,7 @@ class Trainer {
             tasks::AttemptRow row = attempt_row(*session, true);
             row.session = logbook_.add_session(session_row("mouse"));
             id = logbook_.begin_attempt(row);
+            session->recorded = true;
         }
         screens_.screen = demo ? view::Screen::demo : view::Screen::run;
         const Attempt::Outcome outcome =

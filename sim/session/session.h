@@ -32,6 +32,7 @@ struct Session {
     std::string exercise_text;
     std::vector<tasks::Target> rest_targets;
     TargetPlaces rest_target_um{};
+    bool recorded = false; // into a logbook: the window says so
     TissueRig tissue;
     HapticRig haptics;
     Crew crew;
