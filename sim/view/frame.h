@@ -21,9 +21,10 @@ inline constexpr int kTools = 3;
 
 enum class Material : std::uint8_t { organ, wall }; // parenchyma under serosa; fat and peritoneum
 
-/// A deforming surface. `triangles` and `rest_m` must stay the same (address and content) for as
-/// long as `id` does: they are uploaded once. The other two are read in every draw() and may be
-/// gone afterwards. All vertex arrays have the same length; an empty surface draws nothing.
+/// A deforming surface; triangles are counter-clockwise seen from outside, their backs not drawn.
+/// `triangles` and `rest_m` must stay the same (address and content) for as long as `id` does: they
+/// are uploaded once. The other two are read in every draw() and may be gone afterwards. All vertex
+/// arrays have the same length; an empty surface draws nothing.
 struct SurfaceView {
     int id = 0; // unique per surface and attempt: give new ids to a new scene
     Material material = Material::organ;

@@ -42,7 +42,9 @@ Texture noise_texture() {
 } // namespace
 
 Picture::Picture()
-    : tissue_("tissue", shaders::prelude, shaders::tissue_vertex, shaders::tissue_fragment),
+    : organ_("organ", shaders::prelude, shaders::tissue_vertex, shaders::tissue_fragment),
+      wall_("wall", std::string(shaders::prelude) + "#define WALL\n", shaders::tissue_vertex,
+            shaders::tissue_fragment),
       tool_("tool", shaders::prelude, shaders::tool_vertex, shaders::tool_fragment),
       target_("target", shaders::prelude, shaders::target_vertex, shaders::target_fragment),
       noise_(noise_texture()), cylinder_(make_solid(false)), ball_(make_solid(true)),
@@ -117,8 +119,19 @@ void Picture::see(const Program& program, const Camera& camera, const glm::mat4&
     program.set("ahead", glm::vec3(glm::normalize(camera.look_at_m - camera.eye_m)));
 }
 
+void Picture::draw_surfaces(const ViewFrame& frame, const Program& program, Material material) {
+    program.set("noise", 0);
+    for (const SurfaceView& surface : frame.surfaces) {
+        const std::size_t n = surface.rest_m.size();
+        if (surface.material != material || n == 0 || surface.position_m.size() != n ||
+            surface.normal.size() != n)
+            continue; // another's turn, or not published yet
+        const Uploaded& up = uploaded(surface);
+        glDrawElements(GL_TRIANGLES, up.indices, GL_UNSIGNED_INT, nullptr);
+    }
+}
+
 void Picture::draw_tissue(const ViewFrame& frame, const glm::mat4& to_clip) {
-    see(tissue_, frame.camera, to_clip);
     std::array<glm::vec4, kTools> tip{};
     std::array<glm::vec3, kTools> back{};
     for (std::size_t t = 0; t < tip.size(); ++t) {
@@ -126,22 +139,19 @@ void Picture::draw_tissue(const ViewFrame& frame, const glm::mat4& to_clip) {
         tip[t] = glm::vec4(glm::vec3(tool.tip_m), tool.present ? tool.tip_radius_m : 0.0);
         back[t] = glm::vec3(-tool.direction);
     }
-    tissue_.set("tip", tip.data(), kTools);
-    tissue_.set("back", back.data(), kTools);
-    tissue_.set("noise", 0);
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_2D, noise_.id());
+    glEnable(GL_CULL_FACE);
     for (auto& [id, up] : surface_)
         up.used = false;
-    for (const SurfaceView& surface : frame.surfaces) {
-        const std::size_t n = surface.rest_m.size();
-        if (n == 0 || surface.position_m.size() != n || surface.normal.size() != n)
-            continue; // not published yet
-        const Uploaded& up = uploaded(surface);
-        tissue_.set("material", static_cast<int>(surface.material));
-        glDrawElements(GL_TRIANGLES, up.indices, GL_UNSIGNED_INT, nullptr);
-    }
+    see(organ_, frame.camera, to_clip); // before the wall: what they hide is never shaded
+    organ_.set("tip", tip.data(), kTools);
+    organ_.set("back", back.data(), kTools);
+    draw_surfaces(frame, organ_, Material::organ);
+    see(wall_, frame.camera, to_clip);
+    draw_surfaces(frame, wall_, Material::wall);
     std::erase_if(surface_, [](const auto& entry) { return !entry.second.used; });
+    glDisable(GL_CULL_FACE);
 }
 
 void Picture::draw_tools(const ViewFrame& frame, const glm::mat4& to_clip) {

@@ -45,12 +45,13 @@ class Picture {
     Uploaded& uploaded(const SurfaceView& surface);
     void see(const Program& program, const Camera& camera, const glm::mat4& to_clip) const;
     void draw_tissue(const ViewFrame& frame, const glm::mat4& to_clip);
+    void draw_surfaces(const ViewFrame& frame, const Program& program, Material material);
     void draw_tools(const ViewFrame& frame, const glm::mat4& to_clip);
     void draw_targets(const ViewFrame& frame, const Digits& digits, const glm::mat4& to_clip);
     void draw_target(const ViewFrame& frame, const TargetView& target, const Digits& digits,
                      bool hidden);
 
-    Program tissue_, tool_, target_;
+    Program organ_, wall_, tool_, target_;
     Texture noise_;
     Solid cylinder_, ball_;
     VertexArray square_; // no attributes: corners come from gl_VertexID

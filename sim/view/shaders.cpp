@@ -45,10 +45,9 @@ const char* const tissue_fragment = R"(
 in vec3 place;
 in vec3 outward;
 in vec3 rest;
-uniform int material;        // 0 organ, 1 wall
 uniform sampler2D noise;
-uniform vec4 tip[3];         // centre, radius; radius 0: no tool
-uniform vec3 back[3];        // from tip to handle
+uniform vec4 tip[3]; // centre, radius; radius 0: no tool
+uniform vec3 back[3]; // from tip to handle
 out vec4 colour;
 
 // how much of the sky a sphere hides from a surface point: n.w (r/d)^2
@@ -70,29 +69,26 @@ void main() {
     vec2 on_tile = rest.xy + rest.z * vec2(0.55, 0.75);
     vec4 coarse = texture(noise, on_tile * 5.0);
 
-    vec3 base;
-    vec3 film; // a wet film: small waves turn the mirror, not the shade
-    float wet;
-    if (material == 0) { // parenchyma under serosa, lobules as fine mottle
-        vec4 fine = texture(noise, on_tile * 29.0);
-        float mottle = 0.6 * coarse.w + 0.4 * fine.w;
-        base = mix(vec3(0.130, 0.016, 0.012), vec3(0.330, 0.062, 0.042), mottle);
-        base = mix(base, vec3(0.40, 0.16, 0.10), 0.35 * smoothstep(0.58, 0.85, fine.z));
-        film = n + 0.42 * (fine.xyz - 0.5) + 0.50 * (coarse.xyz - 0.5);
-        wet = 0.60;
-    } else { // peritoneum over fat, vessels where two noises cross one half
-        base = mix(vec3(0.42, 0.150, 0.105), vec3(0.56, 0.300, 0.175), coarse.w);
-        float vessel = 1.0 - smoothstep(0.010, 0.030, abs(coarse.y - 0.5));
-        vessel *= smoothstep(0.48, 0.62, coarse.x);
-        base = mix(base, vec3(0.28, 0.035, 0.035), 0.6 * vessel);
-        film = n + 0.6 * (coarse.xyz - 0.5);
-        wet = 0.12;
-    }
-
+    // a wet film: small waves turn the mirror, not the shade
+#ifndef WALL // parenchyma under serosa, lobules as fine mottle
+    vec4 fine = texture(noise, on_tile * 29.0);
+    float mottle = 0.6 * coarse.w + 0.4 * fine.w;
+    vec3 base = mix(vec3(0.130, 0.016, 0.012), vec3(0.330, 0.062, 0.042), mottle);
+    base = mix(base, vec3(0.40, 0.16, 0.10), 0.35 * smoothstep(0.58, 0.85, fine.z));
+    vec3 film = n + 0.42 * (fine.xyz - 0.5) + 0.50 * (coarse.xyz - 0.5);
+    const float wet = 0.60;
     float hidden = 1.0;
     for (int i = 0; i < 3; ++i)
-        if (tip[i].w > 0.0)
-            hidden *= 1.0 - 0.80 * hidden_by(i, n);
+        hidden *= 1.0 - 0.80 * hidden_by(i, n);
+#else        // peritoneum over fat, vessels where two noises cross one half
+    vec3 base = mix(vec3(0.42, 0.150, 0.105), vec3(0.56, 0.300, 0.175), coarse.w);
+    float vessel = clamp(1.5 - 50.0 * abs(coarse.y - 0.5), 0.0, 1.0);
+    vessel *= clamp(7.0 * coarse.x - 3.4, 0.0, 1.0);
+    base = mix(base, vec3(0.28, 0.035, 0.035), 0.6 * vessel);
+    vec3 film = n + 0.6 * (coarse.xyz - 0.5);
+    const float wet = 0.12;
+    const float hidden = 1.0;
+#endif
 
     float facing = max(dot(n, to_eye), 0.0);
     float light = lamp(place);

@@ -6,7 +6,7 @@ namespace view::shaders {
 
 extern const char* const prelude; // version, the lamp and the tone curve: before every shader
 extern const char* const tissue_vertex;
-extern const char* const tissue_fragment;
+extern const char* const tissue_fragment; // with WALL defined: the wall's, cheaper
 extern const char* const tool_vertex;
 extern const char* const tool_fragment;
 extern const char* const target_vertex;

@@ -1,0 +1,149 @@
+// tests/sim/view_window_test.cpp
+// The window itself, hidden, on whatever display there is (CTest starts a virtual one).
+#include "sim/view/demo_world.h"
+#include "sim/view/window.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+
+#include <doctest/doctest.h>
+#include <png.h>
+
+using namespace view;
+
+namespace {
+
+struct Shot {
+    int w = 0, h = 0;
+    std::vector<std::uint8_t> grey;
+};
+
+Shot shot_of(Window& window, const ViewFrame& frame, const Screens& screens) {
+    window.draw(frame, screens);
+    window.draw(frame, screens); // a page has its final place in its second picture
+    const auto path = std::filesystem::temp_directory_path() / "trocar_view_window_test.png";
+    window.screenshot(path.string());
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    REQUIRE(png_image_begin_read_from_file(&image, path.c_str()) != 0);
+    image.format = PNG_FORMAT_GRAY;
+    Shot shot{static_cast<int>(image.width), static_cast<int>(image.height), {}};
+    shot.grey.resize(PNG_IMAGE_SIZE(image));
+    REQUIRE(png_image_finish_read(&image, nullptr, shot.grey.data(), 0, nullptr) != 0);
+    std::filesystem::remove(path);
+    return shot;
+}
+
+/// Where two pictures differ by more than `least` of 255.
+struct Box {
+    int left = 1 << 20, right = -1, top = 1 << 20, bottom = -1, count = 0;
+};
+Box difference(const Shot& a, const Shot& b, int least) {
+    REQUIRE(a.grey.size() == b.grey.size());
+    Box box;
+    for (int y = 0; y < a.h; ++y)
+        for (int x = 0; x < a.w; ++x) {
+            const std::size_t i = static_cast<std::size_t>(y) * a.w + x;
+            if (std::abs(int(a.grey[i]) - int(b.grey[i])) <= least)
+                continue;
+            box = {std::min(box.left, x), std::max(box.right, x), std::min(box.top, y),
+                   std::max(box.bottom, y), box.count + 1};
+        }
+    return box;
+}
+
+WindowOptions hidden(int w, int h) {
+    WindowOptions options;
+    options.width_px = w;
+    options.height_px = h;
+    options.visible = false;
+    options.wait_for_screen = false;
+    return options;
+}
+
+ViewFrame world_of(const DemoSurface& organ) {
+    ViewFrame frame;
+    frame.surfaces = {surface_view(organ, 1, Material::organ)};
+    return frame;
+}
+
+} // namespace
+
+TEST_CASE("Every screen draws a picture of its own") {
+    Window window(hidden(800, 600));
+    const DemoSurface organ = demo_organ(20, 30);
+    const ViewFrame frame = world_of(organ);
+    Screens screens;
+    screens.menu.exercises = {{"Touch the points", "left, right", "In order."}};
+    screens.card.title = "Touch the points";
+    screens.score.title = "Score";
+    std::vector<Shot> shots;
+    for (const Screen screen :
+         {Screen::menu, Screen::card, Screen::demo, Screen::run, Screen::paused, Screen::score}) {
+        screens.screen = screen;
+        shots.push_back(shot_of(window, frame, screens));
+        CHECK(shots.back().w == 800);
+        CHECK(shots.back().h == 600);
+        for (std::size_t i = 0; i + 1 < shots.size(); ++i)
+            CHECK(difference(shots[i], shots.back(), 40).count > 100);
+    }
+}
+
+TEST_CASE("A waiting target in the picture is as wide as its 3 mm project, and 12 px at least") {
+    Window window(hidden(800, 600));
+    ViewFrame frame; // in empty space, so that nothing else changes
+    frame.camera.eye_m = {0.0, 0.0, 0.2};
+    frame.camera.look_at_m = {0.0, 0.0, 0.0};
+    frame.camera.field_of_view_deg = 70.0;
+    Screens screens;
+    screens.screen = Screen::run;
+    TargetView target;
+    target.number = 7;
+    target.state = TargetState::waiting;
+    target.normal = {0.0, 0.0, 1.0};
+    target.position_m = {0.0, 0.0, 5.0}; // behind the camera: the HUD says the same
+    frame.targets = {target};
+    const Shot without = shot_of(window, frame, screens);
+    frame.targets[0].position_m.z = 0.0;
+    const Shot with = shot_of(window, frame, screens);
+    const Box box = difference(without, with, 20);
+    const double expected_px = 600.0 * 0.003 / (0.2 * std::tan(35.0 * std::numbers::pi / 180.0));
+    CHECK(box.right - box.left + 1 >= 12);
+    CHECK(std::abs(box.right - box.left + 1 - expected_px) <= 2.0); // one soft edge on either side
+    CHECK(std::abs(box.bottom - box.top + 1 - expected_px) <= 2.0);
+    CHECK(std::abs(0.5 * (box.left + box.right) - 399.5) <= 1.0); // in the middle
+    CHECK(std::abs(0.5 * (box.top + box.bottom) - 299.5) <= 1.0);
+}
+
+TEST_CASE("A surface that moves moves in the picture, and only there") {
+    Window window(hidden(800, 600));
+    DemoSurface organ = demo_organ(40, 60);
+    const ViewFrame frame = world_of(organ);
+    Screens screens;
+    screens.screen = Screen::run;
+    const Shot rest = shot_of(window, frame, screens);
+    CHECK(difference(rest, shot_of(window, frame, screens), 0).count == 0);
+    for (std::size_t i = 0; i < organ.position_m.size(); ++i) // a dent at the right
+        if (glm::length(organ.rest_m[i] - glm::vec3(0.05F, 0.0F, 0.03F)) < 0.02F)
+            organ.position_m[i].z -= 0.02F;
+    const Box box = difference(rest, shot_of(window, frame, screens), 8);
+    CHECK(box.count > 50);
+    CHECK(box.left > 400); // x of the dent is 30 to 70 mm, right of the middle
+}
+
+TEST_CASE("Without a display the error says what to do and how to go on without a window") {
+    const char* const was = std::getenv("DISPLAY");
+    const std::optional<std::string> display = was != nullptr ? std::optional(was) : std::nullopt;
+    unsetenv("DISPLAY");
+    std::string words;
+    try {
+        Window window(hidden(64, 64));
+    } catch (const WindowError& problem) {
+        words = problem.what();
+    }
+    if (display)
+        setenv("DISPLAY", display->c_str(), 1);
+    CHECK(words.find("DISPLAY") != std::string::npos);
+    CHECK(words.find("trocar run") != std::string::npos);
+}
