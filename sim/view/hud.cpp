@@ -100,7 +100,7 @@ std::string holder(const ViewFrame& frame, const ToolView& tool) {
     if (tool.assistant)
         return "assistant";
     if (!frame.felt || !frame.forces_on)
-        return tool.active ? "you, not felt" : "not felt";
+        return "not felt"; // the frame already says which tool is yours
     return tool.active ? "you" : "";
 }
 

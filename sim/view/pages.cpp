@@ -125,17 +125,15 @@ void draw_card(const CardModel& card, const Fonts& fonts, bool fresh, UserInput&
     ImGui::TextWrapped("%s", card.text.c_str());
     ImGui::PopFont();
     ImGui::Spacing();
+    const ImVec2 row = ImGui::GetCursorScreenPos();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
     for (const Role role : {Role::left, Role::right, Role::assist}) {
-        const ImVec2 at = ImGui::GetCursorScreenPos();
-        draw_badge(*ImGui::GetWindowDrawList(), {at.x + 0.9F * em, at.y + 0.8F * em}, 0.72F * em,
-                   role, role_letter(role));
-        ImGui::Dummy({1.8F * em, 1.5F * em});
-        ImGui::SameLine();
-        ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.3F * em);
-        ImGui::Text("%s tool", role_word(role));
-        if (role != Role::assist)
-            ImGui::SameLine(0.0F, 2.0F * em);
+        const float x = row.x + 9.0F * em * static_cast<float>(role);
+        draw_badge(list, {x + em, row.y + 0.9F * em}, 0.72F * em, role, role_letter(role));
+        draw_text(list, fonts.body, {x + 2.2F * em, row.y + 0.4F * em}, ink::text,
+                  std::string(role_word(role)) + " tool");
     }
+    ImGui::Dummy({27.0F * em, 1.8F * em});
     ImGui::Spacing();
     for (const std::string& limit : card.limits)
         ImGui::BulletText("%s", limit.c_str());
@@ -154,7 +152,7 @@ void draw_card(const CardModel& card, const Fonts& fonts, bool fresh, UserInput&
 }
 
 void draw_pause(const Fonts& fonts, bool fresh, UserInput& input) {
-    begin_panel("paused", 30.0F, 17.0F, fresh);
+    begin_panel("paused", 30.0F, 12.5F, fresh);
     heading(fonts, "Paused");
     ImGui::TextWrapped("Every device is limp. The pause is kept in the logbook.");
     ImGui::Spacing();

@@ -90,6 +90,23 @@ TEST_CASE("Every screen draws a picture of its own") {
     }
 }
 
+TEST_CASE("What a page is told, it shows") {
+    Window window(hidden(800, 600));
+    const auto shot = [&](Screen screen, const std::string& words, double time_s) {
+        ViewFrame frame;
+        frame.time_s = time_s;
+        Screens screens;
+        screens.screen = screen;
+        screens.menu.exercises = {{words, "", ""}};
+        screens.card.title = screens.score.title = words;
+        return shot_of(window, frame, screens);
+    };
+    for (const Screen screen : {Screen::menu, Screen::card, Screen::score})
+        CHECK(difference(shot(screen, "Path", 0.0), shot(screen, "Tubes", 0.0), 40).count > 30);
+    for (const Screen screen : {Screen::demo, Screen::run, Screen::paused})
+        CHECK(difference(shot(screen, "", 0.0), shot(screen, "", 83.0), 20).count > 30);
+}
+
 TEST_CASE("A waiting target in the picture is as wide as its 3 mm project, and 12 px at least") {
     Window window(hidden(800, 600));
     ViewFrame frame; // in empty space, so that nothing else changes
