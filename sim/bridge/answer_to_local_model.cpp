@@ -39,13 +39,47 @@ tissue::BasisContact basis_contact(const Body& body, const FemContact& contact) 
     return out;
 }
 
+glm::dvec3 rest_place(const Body& body, const tissue::ContactPoint& at) noexcept {
+    const tissue::ContactSurface& skin = body.organ->surface;
+    const tissue::Triangle& c = skin.triangles[at.triangle];
+    return at.weight.x * skin.rest_m[c[0]] + at.weight.y * skin.rest_m[c[1]] +
+           at.weight.z * skin.rest_m[c[2]];
+}
+
+// Modes stay good while the factor is the same and no contact has left the middle of its star.
+bool basis_still_good(const Body& body, std::span<const tissue::BasisContact> contacts) noexcept {
+    const SoftBody& soft = *body.soft;
+    constexpr double kMiddle_m = 1e-3;
+    if (soft.basis_of != soft.linearisations || soft.basis_contacts != contacts.size())
+        return false;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const glm::dvec3 moved = rest_place(body, contacts[i].centre) - soft.basis_rest_m[i];
+        if (!(glm::dot(moved, moved) < kMiddle_m * kMiddle_m))
+            return false;
+    }
+    return true;
+}
+
+void compute_basis(Body& body, std::span<const tissue::BasisContact> contacts) noexcept {
+    SoftBody& soft = *body.soft;
+    if (basis_still_good(body, contacts)) {
+        tissue::refresh_contact_basis(soft.model, soft.state, soft.system, soft.basis);
+        return;
+    }
+    tissue::compute_contact_basis(soft.model, body.organ->surface, soft.state, soft.system,
+                                  contacts, soft.basis);
+    tissue::turn_shapes(soft.basis, soft.model.unknowns, soft.shape_by_unknown);
+    soft.basis_of = soft.linearisations;
+    soft.basis_contacts = contacts.size();
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+        soft.basis_rest_m[i] = rest_place(body, contacts[i].centre);
+}
+
 // Modes of one body into the common list. Returns where they begin.
 int add_modes(Body& body, std::span<const tissue::BasisContact> contacts,
               haptics::LocalModels& local) noexcept {
     SoftBody& soft = *body.soft;
-    tissue::compute_contact_basis(soft.model, body.organ->surface, soft.state, soft.system,
-                                  contacts, soft.basis);
-    tissue::turn_shapes(soft.basis, soft.model.unknowns, soft.shape_by_unknown);
+    compute_basis(body, contacts);
     const int first = local.modes;
     const int count = std::min(soft.basis.modes, haptics::kMaxModes - first);
     for (int m = 0; m < count; ++m) {

@@ -23,6 +23,11 @@ struct SoftBody {
     std::vector<double> shape_by_unknown; // the basis, one line of modes per unknown
     std::vector<double> motion_m;         // du of the step being made
     std::vector<double> answer_m;         // A^-1 of the contact rows, 3 columns a tool
+    double drift_m = 0.0;                 // how far anything moved since the system was linearised
+    int linearisations = 0; // counts them, so that what rests on one knows when it is old
+    int basis_of = -1;      // the linearisation and places that the basis was made for
+    std::array<glm::dvec3, haptics::kTools> basis_rest_m{};
+    std::size_t basis_contacts = 0;
     bool resting = true; // nothing touches it and nothing moves: steps cost nothing
 };
 

@@ -15,9 +15,11 @@ namespace {
 // and dropping it makes rest exact, so that resting steps cost nothing and repeat to the bit.
 constexpr double kRestSpeed_mps = 1e-6;
 
-bool moves(const SoftBody& soft, double dt_s) noexcept {
-    return std::any_of(soft.motion_m.begin(), soft.motion_m.end(),
-                       [&](double d) { return std::abs(d) > kRestSpeed_mps * dt_s; });
+double largest(const std::vector<double>& values) noexcept {
+    double most = 0.0;
+    for (const double v : values)
+        most = std::max(most, std::abs(v));
+    return most;
 }
 
 void free_motions(TissueRig& rig, StepOutcome& outcome) noexcept {
@@ -58,14 +60,22 @@ void advance_bodies(TissueRig& rig, const haptics::ContactSolution& solution) no
             touched |= rig.contact[i].body == static_cast<int>(b) &&
                        solution.force_n[i] != glm::dvec3{0.0};
         }
-        if (!touched && !moves(soft, rig.config.step_s)) {
+        const double moved_m = largest(soft.motion_m);
+        if (!touched && !(moved_m > kRestSpeed_mps * rig.config.step_s)) {
             std::fill(soft.state.velocity_mps.begin(), soft.state.velocity_mps.end(),
                       glm::dvec3{0.0});
             soft.resting = true;
             continue;
         }
         tissue::advance(soft.model, soft.motion_m, rig.config.step_s, soft.state);
-        tissue::linearize(soft.model, soft.state, rig.config.step_s, soft.system);
+        soft.drift_m += moved_m;
+        if (soft.drift_m > rig.config.relinearise_m) {
+            tissue::linearize(soft.model, soft.state, rig.config.step_s, soft.system);
+            soft.drift_m = 0.0;
+            ++soft.linearisations;
+        } else {
+            tissue::follow_tangent(soft.model, soft.motion_m, soft.system);
+        }
         tissue::place_surface(body.organ->surface, body.organ->mesh.rest_m, soft.state.position_m,
                               body.skin_m, body.skin_normal);
     }

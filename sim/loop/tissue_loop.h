@@ -36,7 +36,9 @@ struct TissueConfig {
     double reach_m = 5e-3;        // a model exists before the touch: v (L+2) Tf + this
     double patch_radius_m = 14e-3;
     double friction_rigid = 0.05;
-    bool basis = true; // false: forces only (the monolithic reference)
+    double relinearise_m = 20e-6; // below: the tangent of before still holds (0.2 % of an
+                                  // element's strain); 0: linearised in every step
+    bool basis = true;            // false: forces only (the monolithic reference)
 };
 
 struct TissueRig {

@@ -41,6 +41,7 @@ ForceTrack run_monolithic(const std::function<TissueRig(const TissueConfig&)>& m
     TissueConfig config;
     config.step_s = kTick_s / substeps;
     config.basis = false;
+    config.relinearise_m = 0.0;
     TissueRig rig = make_rig(config);
     auto answer = std::make_unique<TissueAnswer>();
     ForceTrack track(motion.tip_m.size());

@@ -237,4 +237,12 @@ void compute_contact_basis(const CorotatedModel& model, const ContactSurface& su
     coefficients(basis, w.momentum, basis.rate);
 }
 
+void refresh_contact_basis(const CorotatedModel& model, const CorotatedState& state,
+                           const CorotatedSystem& system, ContactBasis& basis) noexcept {
+    const Work w = split(basis, static_cast<std::size_t>(model.unknowns));
+    fill_masses(model, state, w);
+    coefficients(basis, system.internal_n, basis.residual);
+    coefficients(basis, w.momentum, basis.rate);
+}
+
 } // namespace tissue

@@ -40,4 +40,8 @@ void compute_contact_basis(const CorotatedModel& model, const ContactSurface& su
                            const CorotatedState& state, CorotatedSystem& system,
                            std::span<const BasisContact> contacts, ContactBasis& basis) noexcept;
 
+/// The same modes at a later state of the same factor: only residual and rate are new.
+void refresh_contact_basis(const CorotatedModel& model, const CorotatedState& state,
+                           const CorotatedSystem& system, ContactBasis& basis) noexcept;
+
 } // namespace tissue

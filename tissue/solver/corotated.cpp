@@ -172,6 +172,14 @@ void linearize(const CorotatedModel& model, const CorotatedState& state, double 
     system.factored = system.factor.factor(system.matrix);
 }
 
+void follow_tangent(const CorotatedModel& model, std::span<const double> du,
+                    CorotatedSystem& system) noexcept {
+    const std::span<double> product = std::span(system.work).first(du.size());
+    multiply(model.pattern, system.stiffness, du, product);
+    for (std::size_t i = 0; i < du.size(); ++i)
+        system.internal_n[i] += product[i];
+}
+
 StepReport free_motion(const CorotatedModel& model, const CorotatedState& state,
                        CorotatedSystem& system, std::span<double> du) noexcept {
     const auto n = static_cast<std::size_t>(model.unknowns);

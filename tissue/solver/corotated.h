@@ -75,6 +75,11 @@ void linearize(const CorotatedModel& model, const CorotatedState& state, double 
 void elastic_forces(const CorotatedModel& model, const CorotatedState& state,
                     std::span<glm::dvec3> force_n) noexcept;
 
+/// After advance() by a small du: f_int follows the tangent, f_int += K du, and A with its factor
+/// stays. What is lost is of second order in du; the caller says how far is small.
+void follow_tangent(const CorotatedModel& model, std::span<const double> du,
+                    CorotatedSystem& system) noexcept;
+
 /// du without contact: A du = M v/dt - f_int + f_ext. `du` has one entry per unknown; it is zero
 /// (relative residual 1) if the system could not be factored.
 StepReport free_motion(const CorotatedModel& model, const CorotatedState& state,
