@@ -22,6 +22,11 @@ void* operator new(std::size_t size) {
         return p;
     throw std::bad_alloc();
 }
+// std::stable_sort asks for its buffer this way and gives it back to the same delete
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+    ++count;
+    return std::malloc(size > 0 ? size : 1);
+}
 void operator delete(void* p) noexcept {
     std::free(p);
 }
