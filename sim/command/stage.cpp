@@ -131,16 +131,16 @@ const view::ViewFrame& Stage::frame(Exchange& exchange) {
     return frame_;
 }
 
-void Stage::steer(const view::UserInput& input, Exchange& exchange) {
+void Stage::steer(const view::UserInput& input, double frame_s, Exchange& exchange) {
     if (!by_hand_)
         return;
     if (input.switch_tool)
         active_ = (active_ + 1) % kTools;
     const tasks::View& seen = session_.scene.scene.view;
     const glm::dvec3 right = glm::cross(seen.forward, seen.up);
-    constexpr double kMetresPerPixel = 0.15e-3, kMetresPerNotch = 2e-3, kMetresPerKeyFrame = 0.6e-3;
+    constexpr double kMetresPerPixel = 0.15e-3, kMetresPerNotch = 2e-3, kKeySpeed_mps = 0.036;
     const double pace = input.fine ? 0.25 : 1.0;
-    const glm::dvec3 keys = kMetresPerKeyFrame * input.move;
+    const glm::dvec3 keys = kKeySpeed_mps * std::clamp(frame_s, 0.0, 0.1) * input.move;
     const glm::dvec3 offset = (kMetresPerPixel * input.mouse_px.x + keys.x) * right +
                               (kMetresPerPixel * input.mouse_px.y + keys.y) * seen.up +
                               (kMetresPerNotch * input.wheel - keys.z) * seen.forward;

@@ -17,7 +17,7 @@ class Stage {
     const view::ViewFrame& frame(Exchange& exchange);
 
     /// Moves the active tool's goal by what the person did since the last frame.
-    void steer(const view::UserInput& input, Exchange& exchange);
+    void steer(const view::UserInput& input, double frame_s, Exchange& exchange);
 
   private:
     void show_tools(const ToolsNow& now);

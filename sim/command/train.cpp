@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <fmt/format.h>
 
 namespace sim {
@@ -164,7 +165,7 @@ class Trainer {
             return false;
         }
         if (screens_.screen != view::Screen::paused)
-            stage.steer(input, exchange);
+            stage.steer(input, 1e-3 * window_.cost().frame_ms, exchange);
         return true;
     }
 
@@ -206,6 +207,8 @@ void add_train(CLI::App& app, int&) {
     c->add_option("--shot-seconds", a->shot_seconds, "Between the exercise's pictures");
     c->callback([a] {
         install_signal_guard();
+        // a software renderer takes every core by default, the 1 kHz loop's too
+        setenv("LP_NUM_THREADS", "1", 0);
         if (!a->shots.empty())
             std::filesystem::create_directories(a->shots);
         Trainer trainer(*a);
