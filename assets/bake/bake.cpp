@@ -1,5 +1,6 @@
 #include "assets/bake/bake.h"
 
+#include "assets/bake/anchors.h"
 #include "assets/bake/fit.h"
 #include "assets/bake/nearest.h"
 #include "assets/bake/remesh.h"
@@ -148,30 +149,6 @@ tissue::TetMesh make_mesh(const Recipe& recipe, const Surface& boundary, PhaseCl
     return std::move(*answer.mesh);
 }
 
-std::vector<std::uint8_t> make_anchors(const Recipe& recipe, const tissue::TetMesh& mesh) {
-    constexpr double kSlackMm = 1e-6; // a face of the box counts as inside
-    std::vector<std::uint8_t> anchored;
-    for (const auto& p_m : mesh.rest_m) {
-        const glm::dvec3 p = p_m / kMm;
-        bool fixed = false;
-        for (const auto& s : recipe.anchor_spheres) {
-            fixed = fixed || glm::length(p - s.centre_mm) <= s.radius_mm;
-        }
-        for (const auto& b : recipe.anchor_boxes) {
-            fixed = fixed || (glm::all(glm::greaterThanEqual(p, b.low_mm - kSlackMm)) &&
-                              glm::all(glm::lessThanEqual(p, b.high_mm + kSlackMm)));
-        }
-        anchored.push_back(fixed ? 1 : 0);
-    }
-    const auto count = std::count(anchored.begin(), anchored.end(), 1);
-    if (count < 3) {
-        throw RecipeError(fmt::format("{}: anchor_sphere and anchor_box hold {} of {} nodes: "
-                                      "accepted: at least 3, or the body would float",
-                                      recipe.name, count, mesh.rest_m.size()));
-    }
-    return anchored;
-}
-
 void measure(const Surfaces& s, const tissue::TetMesh& mesh, BakeReport& report) {
     const Surface boundary{mesh.rest_m, tissue::boundary_triangles(mesh)};
     const NearestOnSurface to_mesh(boundary), to_skin(s.skin);
@@ -223,7 +200,7 @@ Baked bake(const Recipe& recipe, const BakeOptions& options) {
                                   ? liver_surfaces(recipe, *lobed, clock)
                                   : box_surfaces(recipe, std::get<BoxShape>(recipe.shape), clock);
     organ.mesh = make_mesh(recipe, surfaces.boundary, clock, options, baked.report);
-    organ.anchored = make_anchors(recipe, organ.mesh);
+    make_anchors(recipe, organ);
     baked.boundary = {organ.mesh.rest_m, tissue::boundary_triangles(organ.mesh)};
 
     clock.begin("distances");
@@ -237,7 +214,7 @@ Baked bake(const Recipe& recipe, const BakeOptions& options) {
     tissue::make_footprints(organ.mesh, organ.anchored, footprint, organ.surface);
     clock.begin("mesh terms");
     tissue::make_mesh_terms(organ.mesh, organ.material.poisson, organ.anchored, footprint,
-                            organ.surface, options.mesh_term_progress);
+                            organ.surface, organ.bed, options.mesh_term_progress);
     clock.end();
     return baked;
 }

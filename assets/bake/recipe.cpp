@@ -78,6 +78,7 @@ void read_anchors(const Table& top, Recipe& recipe) {
             {.low_mm = t.vector("low_mm", -1e3, 1e3), .high_mm = t.vector("high_mm", -1e3, 1e3)});
         t.no_other_keys();
     }
+    recipe.hold_length_mm = top.number("hold_length_mm", 0.0, 100.0, 0.0);
 }
 
 void read_fine(const Table& top, Recipe& recipe) {

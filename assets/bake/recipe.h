@@ -18,7 +18,7 @@ struct RecipeError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Nodes in any of these are fixed in place.
+/// What lies in any of these is held in place: see hold_length_mm.
 struct AnchorSphere {
     glm::dvec3 centre_mm{0.0};
     double radius_mm = 0.0;
@@ -53,6 +53,7 @@ struct Recipe {
     std::variant<LobedShape, VaultShape, BoxShape> shape;
     std::vector<AnchorSphere> anchor_spheres;
     std::vector<AnchorBox> anchor_boxes;
+    double hold_length_mm = 0.0; // L of the elastic bed in the anchors; 0: their nodes are fixed
     std::vector<FineSpot> fine;
     tissue::Material material;
     std::uint64_t text_hash = 0; // FNV-1a of the text

@@ -40,6 +40,11 @@ std::string report_json(const Recipe& recipe, const Baked& baked) {
         j["nodes"] = organ.mesh.rest_m.size();
         j["tets"] = organ.mesh.tets.size();
         j["anchored_nodes"] = anchored;
+        double hold_m = 0.0;
+        for (const auto& sample : organ.bed) {
+            hold_m += sample.stiffness_m;
+        }
+        j["hold_npm"] = hold_m * organ.material.young_pa;
         j["free_unknowns"] = 3 * (organ.mesh.rest_m.size() - anchored);
         j["volume_m3"] = r.mesh_volume_m3;
         j["worst_dihedral_deg"] = r.quality.worst_dihedral_deg;

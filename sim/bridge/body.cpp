@@ -89,8 +89,8 @@ Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Ma
     }
     body.table = make_table(material, tip_radius_m);
     fill_law(body, tip_radius_m);
-    tissue::CorotatedModel model =
-        tissue::make_corotated(body.organ->mesh, material, body.organ->anchored);
+    tissue::CorotatedModel model = tissue::make_corotated(
+        body.organ->mesh, material, body.organ->anchored, glm::dvec3{0.0}, body.organ->bed);
     tissue::CorotatedState state = tissue::rest_state(model);
     tissue::CorotatedSystem system = tissue::make_system(model);
     tissue::linearize(model, state, dt_s, system);

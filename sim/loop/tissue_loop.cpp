@@ -12,8 +12,10 @@ namespace sim {
 namespace {
 
 // Below these a body is at rest: a micrometre a second moves nothing that a hand or eye can tell,
-// and dropping it makes rest exact, so that resting steps cost nothing and repeat to the bit.
+// and dropping it makes rest exact, so that resting steps cost nothing and repeat to the bit. An
+// organ that sways on its bed is as slow at each turning point: it must stay slow for longer.
 constexpr double kRestSpeed_mps = 1e-6;
+constexpr double kRestTime_s = 0.3;
 
 double largest(const std::vector<double>& values) noexcept {
     double most = 0.0;
@@ -61,7 +63,9 @@ void advance_bodies(TissueRig& rig, const haptics::ContactSolution& solution) no
                        solution.force_n[i] != glm::dvec3{0.0};
         }
         const double moved_m = largest(soft.motion_m);
-        if (!touched && !(moved_m > kRestSpeed_mps * rig.config.step_s)) {
+        const bool slow = !touched && !(moved_m > kRestSpeed_mps * rig.config.step_s);
+        soft.slow_s = slow ? soft.slow_s + rig.config.step_s : 0.0;
+        if (soft.slow_s > kRestTime_s) {
             std::fill(soft.state.velocity_mps.begin(), soft.state.velocity_mps.end(),
                       glm::dvec3{0.0});
             soft.resting = true;

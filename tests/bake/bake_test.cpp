@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <sstream>
 #include <sys/wait.h>
 
@@ -145,9 +146,7 @@ TEST_CASE("bake: the liver fits the real-time budget with good tetrahedra") {
     CHECK(organ.mesh.rest_m.size() <= 450);
     CHECK(organ.mesh.tets.size() >= 1300);
     CHECK(organ.mesh.tets.size() <= 1800);
-    const auto free = std::count(organ.anchored.begin(), organ.anchored.end(), 0);
-    CHECK(3 * free >= 1000);
-    CHECK(3 * free <= 1200);
+    CHECK(std::count(organ.anchored.begin(), organ.anchored.end(), 1) == 0); // the bed holds it
     CHECK(liver().report.quality.worst_dihedral_deg >= 8.0);
     for (const auto& t : organ.mesh.tets) {
         CHECK(six_volumes(organ.mesh, t) > 0.0);
@@ -178,21 +177,50 @@ TEST_CASE("bake: footprints sum to one, mesh terms soften, and the file holds th
     CHECK(tissue::write_organ(tissue::read_organ(bytes)) == bytes);
 }
 
-TEST_CASE("bake: anchored are exactly the nodes in the recipe's regions") {
+TEST_CASE("bake: the bed lies in the recipe's regions and fills what the body has of them") {
     const auto recipe = bake::parse_recipe(organ_text("liver"), "liver.toml");
     const auto& organ = liver().organ;
-    for (std::size_t i = 0; i < organ.mesh.rest_m.size(); ++i) {
-        const glm::dvec3 p = 1e3 * organ.mesh.rest_m[i];
-        bool inside = false;
+    const auto inside = [&](const glm::dvec3& place_m) {
+        const glm::dvec3 p = 1e3 * place_m;
+        bool in = false;
         for (const auto& b : recipe.anchor_boxes) {
-            inside = inside || (p.x >= b.low_mm.x && p.x <= b.high_mm.x && p.y >= b.low_mm.y &&
-                                p.y <= b.high_mm.y && p.z >= b.low_mm.z && p.z <= b.high_mm.z);
+            in = in || (p.x >= b.low_mm.x && p.x <= b.high_mm.x && p.y >= b.low_mm.y &&
+                        p.y <= b.high_mm.y && p.z >= b.low_mm.z && p.z <= b.high_mm.z);
         }
         for (const auto& s : recipe.anchor_spheres) {
-            inside = inside || glm::length(p - s.centre_mm) <= s.radius_mm;
+            in = in || glm::length(p - s.centre_mm) <= s.radius_mm;
         }
-        CHECK(static_cast<bool>(organ.anchored[i]) == inside);
+        return in;
+    };
+    double held_m3 = 0.0;
+    for (const auto& sample : organ.bed) {
+        glm::dvec3 place_m{0.0};
+        for (int k = 0; k < 4; ++k) {
+            place_m += sample.weight[k] * organ.mesh.rest_m[organ.mesh.tets[sample.tet][k]];
+        }
+        CHECK(inside(place_m));
+        held_m3 += sample.stiffness_m * 1e-6 * recipe.hold_length_mm * recipe.hold_length_mm;
     }
+    // the same volume by chance
+    std::mt19937_64 random(3);
+    double counted_m3 = 0.0;
+    constexpr int kDarts = 200;
+    for (const auto& t : organ.mesh.tets) {
+        for (int dart = 0; dart < kDarts; ++dart) {
+            std::array<double, 4> w{};
+            double sum = 0.0;
+            for (double& x : w) {
+                x = -std::log((static_cast<double>(random() >> 11) + 1.0) * 0x1p-53);
+                sum += x;
+            }
+            glm::dvec3 place_m{0.0};
+            for (int k = 0; k < 4; ++k) {
+                place_m += w[k] / sum * organ.mesh.rest_m[t[k]];
+            }
+            counted_m3 += inside(place_m) ? six_volumes(organ.mesh, t) / 6.0 / kDarts : 0.0;
+        }
+    }
+    CHECK(held_m3 == bake_tests::near(counted_m3, 0.01));
 }
 
 TEST_CASE("bake: the graded liver has the liver's skin on other tetrahedra") {

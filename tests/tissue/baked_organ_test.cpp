@@ -19,6 +19,7 @@ tissue::BakedOrgan small_organ() {
     o.mesh.rest_m = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}};
     o.mesh.tets = {{0, 1, 2, 3}};
     o.anchored = {1, 0, 1, 1};
+    o.bed = {{0, {0.1, 0.2, 0.3, 0.4}, 0.5}, {0, {0.7, 0.1, 0.1, 0.1}, 0.25}};
     o.surface.rest_m = o.mesh.rest_m;
     o.surface.triangles = tissue::boundary_triangles(o.mesh);
     o.surface.neighbours = tissue::triangle_neighbours(o.surface.triangles);
@@ -106,6 +107,9 @@ TEST_CASE("baked organ: every field survives writing and reading") {
     CHECK(read.mesh.rest_m == organ.mesh.rest_m);
     CHECK(read.mesh.tets == organ.mesh.tets);
     CHECK(read.anchored == organ.anchored);
+    REQUIRE(read.bed.size() == 2);
+    CHECK(read.bed[1].weight == organ.bed[1].weight);
+    CHECK(read.bed[0].stiffness_m == 0.5);
     CHECK(read.surface.rest_m == organ.surface.rest_m);
     CHECK(read.surface.triangles == organ.surface.triangles);
     CHECK(read.surface.neighbours == organ.surface.neighbours);
@@ -136,7 +140,7 @@ TEST_CASE("baked organ: the file is little endian and ends with the FNV-1a hash 
         head.push_back(static_cast<char>(bytes[i]));
     }
     CHECK(head == "TROCORGN");
-    CHECK(bytes[8] == std::byte{1}); // version 1
+    CHECK(bytes[8] == std::byte{2}); // version 1
     CHECK(bytes[11] == std::byte{0});
     CHECK(bytes[12] == std::byte{5}); // length of the name
     CHECK(bytes[20] == std::byte{'p'});
@@ -235,11 +239,18 @@ TEST_CASE("baked organ: a number that is not finite is refused") {
     }
 }
 
+TEST_CASE("baked organ: a bed in a tetrahedron that is not there is refused") {
+    auto organ = small_organ();
+    organ.bed[1].tet = 1;
+    CHECK(refusal(tissue::write_organ(organ)).find("tetrahedron of the bed 1") !=
+          std::string::npos);
+}
+
 TEST_CASE("baked organ: a file of a newer version is refused by its number") {
     auto bytes = tissue::write_organ(small_organ());
-    bytes[8] = std::byte{2};
+    bytes[8] = std::byte{3};
     sign(bytes);
-    CHECK(refusal(bytes).find("version 2, this build reads version 1") != std::string::npos);
+    CHECK(refusal(bytes).find("version 3, this build reads version 2") != std::string::npos);
 }
 
 TEST_CASE("baked organ: a rigid body has a surface and nothing else") {

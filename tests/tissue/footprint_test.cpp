@@ -117,13 +117,14 @@ TEST_CASE("footprint: rows sum to one and stay on the pressed face") {
     CHECK(glm::length(skin.offset_m[middle]) < 1e-12);
 }
 
-TEST_CASE("footprint: the kernel shrinks towards a free edge, but not below the tip's") {
+TEST_CASE("footprint: the kernel shrinks towards a free edge, to the tip's or half a tet's") {
     const auto mesh = tissue::box_mesh(kBlock_m, {7, 7, 3});
     auto skin = block::top_skin(kBlock_m, 2e-3);
     const tissue::FootprintOptions options;
     tissue::make_footprints(mesh, block::bottom_anchored(mesh), options, skin);
-    const double least = 1.3175 * options.tip_radius_max_m;
-    const double most = options.size_factor * tissue::nodal_size_m(mesh)[vertex_at(skin, {})];
+    const double size_m = tissue::nodal_size_m(mesh)[vertex_at(skin, {})];
+    const double least = std::max(1.3175 * options.tip_radius_max_m, 0.5 * size_m);
+    const double most = options.size_factor * size_m;
     for (const double s : {0.0, 2e-3, 6e-3, 10e-3, 16e-3, 40e-3}) {
         const std::size_t v = vertex_at(skin, {s, 0.04, 0.04});
         const double expected = std::max(least, std::min(most, s));

@@ -98,7 +98,7 @@ TEST_CASE("mesh term: progress runs to the end") {
     const auto anchored = block::bottom_anchored(mesh);
     auto skin = block::top_skin({.08, .08, .04}, 20e-3);
     tissue::make_footprints(mesh, anchored, {}, skin);
-    tissue::make_mesh_terms(mesh, kPoisson, anchored, {}, skin, [](double share) {
+    tissue::make_mesh_terms(mesh, kPoisson, anchored, {}, skin, {}, [](double share) {
         CHECK(share > last);
         last = share;
     });

@@ -1,4 +1,4 @@
-// The file format of a baked organ, version 1. All little endian, doubles as IEEE 754 bits:
+// The file format of a baked organ, version 2. All little endian, doubles as IEEE 754 bits:
 //   magic "TROCORGN", u32 version, then the fields of BakedOrgan in the order of write_fields(),
 //   each list as u64 count and its items, then u64 FNV-1a of everything before it.
 // One list of fields serves both directions, so that they cannot drift apart.
@@ -14,8 +14,9 @@ namespace tissue {
 namespace {
 
 constexpr std::string_view kMagic = "TROCORGN";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kHashSize = 8;
+constexpr std::size_t kBedSampleSize = 4 + 5 * 8;
 
 [[noreturn]] void fail(const std::string& what, std::size_t byte) {
     throw std::invalid_argument("baked organ, byte " + std::to_string(byte) + ": " + what);
@@ -50,6 +51,7 @@ class Writer {
             item(v);
         }
     }
+    void item(const BedSample& b) { item(b.tet), item(b.weight), item(b.stiffness_m); }
     template <class T> void list(const std::vector<T>& v) {
         integer(static_cast<std::uint64_t>(v.size()));
         for (const auto& one : v) {
@@ -103,8 +105,9 @@ class Reader {
             item(v);
         }
     }
+    void item(BedSample& b) { item(b.tet), item(b.weight), item(b.stiffness_m); }
     template <class T> void list(std::vector<T>& v) {
-        v.resize(count(sizeof(T)));
+        v.resize(count(std::same_as<T, BedSample> ? kBedSampleSize : sizeof(T)));
         for (auto& one : v) {
             item(one);
         }
@@ -138,8 +141,8 @@ class Reader {
 
 /// `start` (may be null) receives where each list begins, for messages.
 struct ListStarts {
-    std::size_t anchored = 0, tets = 0, triangles = 0, neighbours = 0, row_start = 0, row_node = 0,
-                frame_node = 0, sizes = 0;
+    std::size_t anchored = 0, bed = 0, tets = 0, triangles = 0, neighbours = 0, row_start = 0,
+                row_node = 0, frame_node = 0, sizes = 0;
 };
 
 /// The order of the file. `Organ` is const for a Writer.
@@ -168,6 +171,8 @@ template <class Stream, class Organ> ListStarts fields(Stream& s, Organ& o) {
     s.list(o.mesh.tets);
     at.anchored = here();
     s.list(o.anchored);
+    at.bed = here();
+    s.list(o.bed);
     s.list(o.surface.rest_m);
     at.triangles = here();
     s.list(o.surface.triangles);
@@ -233,6 +238,12 @@ void check_organ(const BakedOrgan& o, const ListStarts& at) {
     check_size(o.anchored.size(), nodes, "anchored", at.anchored);
     check_indices(std::span(&o.anchored, 1), std::uint8_t{0}, std::uint8_t{2}, "anchored",
                   at.anchored);
+    for (std::size_t i = 0; i < o.bed.size(); ++i) {
+        if (o.bed[i].tet >= o.mesh.tets.size() || !(o.bed[i].stiffness_m >= 0.0))
+            fail("tetrahedron of the bed " + std::to_string(o.bed[i].tet) +
+                     " is out of range, or its stiffness negative",
+                 at.bed + 8 + i * kBedSampleSize);
+    }
     check_indices(s.triangles, 0U, vertices, "vertex of a triangle", at.triangles);
     check_size(s.neighbours.size(), s.triangles.size(), "neighbours", at.neighbours);
     check_indices(s.neighbours, -1, static_cast<std::int32_t>(s.triangles.size()),

@@ -5,6 +5,7 @@
 
 #include "tissue/material/elastic.h"
 #include "tissue/mesh/contact_surface.h"
+#include "tissue/mesh/elastic_bed.h"
 
 #include <cstddef>
 #include <string>
@@ -16,6 +17,7 @@ struct BakedOrgan {
     bool rigid = false;                 // scenery: a surface without tetrahedra
     TetMesh mesh;                       // empty if rigid
     std::vector<std::uint8_t> anchored; // per node, 1 = fixed in place
+    std::vector<BedSample> bed;         // what holds it elastically, by tet
     ContactSurface surface;             // rigid: rows and terms empty
     Material material;                  // default; a scene may name another
     double tip_radius_max_m = 3e-3;     // kernels were made for tips up to this

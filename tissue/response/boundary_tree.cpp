@@ -123,14 +123,18 @@ bool crosses(const BoundaryTree::Box& box, const dvec3& from, const dvec3& direc
 } // namespace
 
 BoundaryTree make_boundary_tree(const TetMesh& mesh) {
+    return make_surface_tree(mesh.rest_m, boundary_triangles(mesh));
+}
+
+BoundaryTree make_surface_tree(std::span<const dvec3> node_m, std::span<const Triangle> triangles) {
     BoundaryTree tree;
-    tree.node_m = mesh.rest_m;
-    tree.triangle = boundary_triangles(mesh);
+    tree.node_m.assign(node_m.begin(), node_m.end());
+    tree.triangle.assign(triangles.begin(), triangles.end());
     if (tree.triangle.empty())
         throw std::invalid_argument("the body has no boundary triangles");
     std::vector<dvec3> centre;
     for (const auto& [i, j, k] : tree.triangle) {
-        const dvec3 &a = mesh.rest_m[i], &b = mesh.rest_m[j], &c = mesh.rest_m[k];
+        const dvec3 &a = node_m[i], &b = node_m[j], &c = node_m[k];
         centre.push_back((a + b + c) / 3.0);
         tree.normal.push_back(glm::normalize(glm::cross(b - a, c - a)));
     }

@@ -21,6 +21,9 @@ struct BoundaryTree {
 };
 /// Throws std::invalid_argument if the mesh has no boundary.
 BoundaryTree make_boundary_tree(const TetMesh& mesh);
+/// The same over any surface, outward triangles. Throws if there is none.
+BoundaryTree make_surface_tree(std::span<const glm::dvec3> node_m,
+                               std::span<const Triangle> triangles);
 
 struct BoundaryPoint {
     std::uint32_t triangle = 0;

@@ -73,6 +73,11 @@ double backed_thickness_m(const BoundaryTree& tree, std::span<const std::uint8_t
     return kUnbacked_m;
 }
 
+bool closed(const ContactSurface& surface) {
+    return std::all_of(surface.neighbours.begin(), surface.neighbours.end(),
+                       [](const auto& across) { return std::ranges::min(across) >= 0; });
+}
+
 double size_at(const BoundaryTree& tree, const BoundaryPoint& at, std::span<const double> size) {
     const auto [a, b, c] = tree.triangle[at.triangle];
     return glm::dot(at.weight, dvec3{size[a], size[b], size[c]});
@@ -135,6 +140,9 @@ void make_footprints(const TetMesh& mesh, std::span<const std::uint8_t> anchored
     const std::size_t vertices = surface.rest_m.size();
 
     surface.neighbours = triangle_neighbours(surface.triangles);
+    const BoundaryTree edges = closed(surface)
+                                   ? make_surface_tree(surface.rest_m, surface.triangles)
+                                   : tree; // a skin over a part says nothing of the body's edges
     surface.row_start.assign(1, 0);
     surface.row_node.clear();
     surface.row_weight.clear();
@@ -152,7 +160,7 @@ void make_footprints(const TetMesh& mesh, std::span<const std::uint8_t> anchored
         const double h = size_at(tree, nearest_point(tree, at_m), size);
         const double reach = kernel_reach_m(h, options);
         const BoundaryPoint below = point_below(tree, at_m, normal[v], reach);
-        const double r = kernel_radius_m(tree, at_m, normal[v], h, options);
+        const double r = kernel_radius_m(edges, at_m, normal[v], h, options);
         if (options.point_rows)
             append_row(tree, std::vector<KernelSample>{{below, 1.0}}, at_m, surface);
         else

@@ -2,8 +2,9 @@
 // Contact on coarse tetrahedra: makes the footprint rows of a ContactSurface, at bake time.
 // Kernel k(rho) = 2/(pi r^2) (1 - rho^2), rho = distance / r, 90 points on 5 rings, in the tangent
 // plane at the vertex, each carried along the normal onto the body's boundary; points off the body
-// are left out and the rest renormalised. r = max(1.3175 a, min(c h, s)): a tip radius, h nodal
-// size, c = 1.5, s distance to a free edge of the body (or to where it has turned by 66 deg).
+// are left out and the rest renormalised. r = max(1.3175 a, min(c h, max(s, h/2))): a tip radius,
+// h nodal size, c = 1.5, s distance to a free edge of the body (or to where it has turned by 66
+// deg): on the skin where that is closed, so that it does not hang on the facets of the tetrahedra.
 #pragma once
 
 #include "tissue/mesh/contact_surface.h"

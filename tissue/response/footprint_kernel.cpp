@@ -19,7 +19,8 @@ using std::numbers::pi;
 
 constexpr double kFacing = 0.4;        // cos 66 deg: turned further, it is another side
 constexpr double kPunchRatio = 1.3175; // 2.0695 / (pi/2): keeps the sub-grid term positive
-constexpr int kEdgeDirections = 24;    // finds a straight edge to within 1 %
+constexpr double kResolved = 0.5;
+constexpr int kEdgeDirections = 24; // finds a straight edge to within 1 %
 constexpr int kEdgeSteps = 4;
 constexpr int kEdgeBisections = 8;
 
@@ -119,6 +120,8 @@ double kernel_radius_m(const BoundaryTree& tree, const dvec3& centre_m, const dv
             break;
         }
     }
+    // below half the nodal size not even quadratic tetrahedra see the kernel's own dimple
+    edge_m = std::max(edge_m, kResolved * size_m);
     return std::max(least, std::min(options.size_factor * size_m, edge_m));
 }
 

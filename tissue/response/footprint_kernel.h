@@ -32,8 +32,8 @@ std::vector<KernelSample> kernel_samples(const BoundaryTree& tree, const glm::dv
 BoundaryPoint point_below(const BoundaryTree& tree, const glm::dvec3& place_m,
                           const glm::dvec3& normal, double reach_m);
 
-/// r = max(1.3175 a, min(c h, s)), s: distance in the tangent plane at which the body ends or has
-/// turned away. `size_m` is h here.
+/// r = max(1.3175 a, min(c h, max(s, h/2))), s: distance in the tangent plane at which the body
+/// ends or has turned away. `size_m` is h here.
 double kernel_radius_m(const BoundaryTree& tree, const glm::dvec3& centre_m,
                        const glm::dvec3& normal, double size_m, const FootprintOptions& options);
 

@@ -150,10 +150,38 @@ void add_element(const TetMesh& mesh, const Tet& tet, const Lame& elastic, const
     }
 }
 
+// Shape functions at barycentric `l`, in the order of element_nodes().
+void shape_values(int order, const std::array<double, 4>& l, std::span<double> value) {
+    for (int i = 0; i < 4; ++i)
+        value[i] = order == 1 ? l[i] : l[i] * (2.0 * l[i] - 1.0);
+    for (int e = 0; order == 2 && e < 6; ++e)
+        value[4 + e] = 4.0 * l[kEdge[e][0]] * l[kEdge[e][1]];
+}
+
+void add_bed(const TetMesh& mesh, std::span<const BedSample> bed, const Blocks& blocks,
+             LinearStatics& s) {
+    std::vector<double> value;
+    for (const BedSample& sample : bed) {
+        const auto nodes = element_nodes(s, mesh.tets[sample.tet]);
+        value.assign(nodes.size(), 0.0);
+        shape_values(s.order, sample.weight, value);
+        for (std::size_t a = 0; a < nodes.size(); ++a) {
+            for (std::size_t b = 0; b < nodes.size(); ++b) {
+                const int i = s.dof[nodes[a]], j = s.dof[nodes[b]];
+                if (j >= 0 && i >= j) {
+                    add_block(blocks, i / 3, j / 3, dmat3(sample.stiffness_m * value[a] * value[b]),
+                              s);
+                }
+            }
+        }
+    }
+}
+
 } // namespace
 
 LinearStatics make_linear_statics(const TetMesh& mesh, int order, double poisson,
-                                  std::span<const std::uint8_t> anchored) {
+                                  std::span<const std::uint8_t> anchored,
+                                  std::span<const BedSample> bed) {
     if (order != 1 && order != 2)
         throw std::invalid_argument("order = " + std::to_string(order) + ": must be 1 or 2");
     check_mesh(mesh);
@@ -170,6 +198,7 @@ LinearStatics make_linear_statics(const TetMesh& mesh, int order, double poisson
     const Blocks blocks = make_pattern(mesh, s);
     for (const Tet& tet : mesh.tets)
         add_element(mesh, tet, elastic, blocks, s);
+    add_bed(mesh, bed, blocks, s);
     return s;
 }
 

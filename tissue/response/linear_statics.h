@@ -4,6 +4,7 @@
 // mesh_term.cpp at bake time and by tests; any thread, not real time.
 #pragma once
 
+#include "tissue/mesh/elastic_bed.h"
 #include "tissue/mesh/tet_mesh.h"
 #include "tissue/solver/sparse_factor.h"
 
@@ -19,10 +20,12 @@ struct LinearStatics {
 };
 
 /// Nodes of the mesh keep their numbers, mid-edge nodes follow. A mid-edge node is fixed where
-/// both ends are, so that the linear shapes stay a subspace of the quadratic ones.
+/// both ends are, so that the linear shapes stay a subspace of the quadratic ones. `bed`: what
+/// holds the body elastically, seen by both orders at the same points for the same reason.
 /// Throws std::invalid_argument for an order or a Poisson's ratio out of range.
 LinearStatics make_linear_statics(const TetMesh& mesh, int order, double poisson,
-                                  std::span<const std::uint8_t> anchored);
+                                  std::span<const std::uint8_t> anchored,
+                                  std::span<const BedSample> bed = {});
 
 /// Shape functions at a place on a boundary triangle: 3 or 6 entries (linear: the rest is 0).
 struct SurfaceShape {

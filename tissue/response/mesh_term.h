@@ -1,20 +1,23 @@
 // tissue/response/mesh_term.h
 // The mesh term dW = W_quadratic - W_linear >= 0 of the same mesh under the same kernel, which
 // softens what linear tetrahedra make too stiff (linear shapes are a subspace of the quadratic
-// ones, so the difference has one sign). Statics, anchored nodes fixed. Slow: bake time.
+// ones, so the difference has one sign). Statics, anchored nodes fixed, `bed` holding. Slow: bake
+// time.
 #pragma once
 
+#include "tissue/mesh/elastic_bed.h"
 #include "tissue/response/footprint.h"
 
 namespace tissue {
 
 /// Fills surface.mesh_term_n_m and _t_m; call after make_footprints, with the same options.
-/// Solved at the corners of the body's boundary, mean of two tangents, interpolated to the skin.
+/// Solved at every vertex of the skin, for near an edge nothing can be interpolated: the kernel
+/// shrinks there and the compliance rises within a tetrahedron. Tangential: mean of two tangents.
 /// `progress` (may be empty) is called with 0..1.
 /// Throws std::invalid_argument for sizes that do not fit, a Poisson's ratio out of range, and a
 /// body that nothing holds: it has no static compliance.
 void make_mesh_terms(const TetMesh& mesh, double poisson, std::span<const std::uint8_t> anchored,
                      const FootprintOptions& options, ContactSurface& surface,
-                     void (*progress)(double share) = nullptr);
+                     std::span<const BedSample> bed = {}, void (*progress)(double share) = nullptr);
 
 } // namespace tissue

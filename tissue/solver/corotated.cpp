@@ -96,6 +96,41 @@ void add_tangent(const CorotatedModel& model, std::size_t tet, const ElementTang
     scatter_tangent(model, tet, {k00, k11, k22, k33, k01, k02, k03, k12, k13, k23}, values);
 }
 
+double held_npm(const HeldTet& held, int a, int b) noexcept {
+    constexpr std::array<std::array<int, 4>, 4> kPlace{
+        {{0, 4, 5, 6}, {4, 1, 7, 8}, {5, 7, 2, 9}, {6, 8, 9, 3}}};
+    return held.npm[kPlace[a][b]];
+}
+
+// Force of the bed on corner a of a held tet.
+dvec3 bed_force_n(const CorotatedModel& model, const HeldTet& held, const CorotatedState& state,
+                  int a) noexcept {
+    dvec3 force{0.0};
+    for (int b = 0; b < 4; ++b) {
+        const std::uint32_t node = model.mesh.tets[held.tet][b];
+        force += held_npm(held, a, b) * (state.position_m[node] - model.mesh.rest_m[node]);
+    }
+    return force;
+}
+
+void assemble_bed(const CorotatedModel& model, const CorotatedState& state,
+                  CorotatedSystem& system) noexcept {
+    for (const HeldTet& held : model.held) {
+        for (int a = 0; a < 4; ++a) {
+            const std::int32_t dof = model.dof[model.mesh.tets[held.tet][a]];
+            if (dof < 0)
+                continue;
+            const dvec3 force = bed_force_n(model, held, state, a);
+            for (int k = 0; k < 3; ++k)
+                system.internal_n[dof + k] += force[k];
+        }
+        std::array<dmat3, 10> block;
+        for (int k = 0; k < 10; ++k)
+            block[k] = dmat3(held.npm[k]);
+        scatter_tangent(model, held.tet, block, system.stiffness.data());
+    }
+}
+
 // f_int - f_ext and K.
 void assemble(const CorotatedModel& model, const CorotatedState& state, bool exact,
               CorotatedSystem& system) noexcept {
@@ -127,6 +162,7 @@ void assemble(const CorotatedModel& model, const CorotatedState& state, bool exa
         }
         add_tangent(model, e, element_tangent(model, e, shape, exact), g, system.stiffness.data());
     }
+    assemble_bed(model, state, system);
 }
 
 // A = M/dt^2 + (alpha M + beta K)/dt + K
@@ -234,12 +270,23 @@ void elastic_forces(const CorotatedModel& model, const CorotatedState& state,
                 stress_nm * (shape.rotation * model.gradient_1pm[e][a]);
         }
     }
+    for (const HeldTet& held : model.held) {
+        for (int a = 0; a < 4; ++a)
+            force_n[model.mesh.tets[held.tet][a]] += bed_force_n(model, held, state, a);
+    }
 }
 
 double elastic_energy_j(const CorotatedModel& model, const CorotatedState& state) noexcept {
     double sum = 0.0;
     for (std::size_t e = 0; e < model.mesh.tets.size(); ++e) {
         sum += element_energy_j(model, e, element_shape(model, e, state.position_m));
+    }
+    for (const HeldTet& held : model.held) {
+        for (int a = 0; a < 4; ++a) {
+            const std::uint32_t node = model.mesh.tets[held.tet][a];
+            sum += 0.5 * glm::dot(bed_force_n(model, held, state, a),
+                                  state.position_m[node] - model.mesh.rest_m[node]);
+        }
     }
     return sum;
 }

@@ -14,6 +14,7 @@
 #pragma once
 
 #include "tissue/material/elastic.h"
+#include "tissue/mesh/elastic_bed.h"
 #include "tissue/mesh/tet_mesh.h"
 #include "tissue/solver/sparse_factor.h"
 
@@ -21,6 +22,12 @@
 #include <limits>
 
 namespace tissue {
+
+/// What the bed does to one tet: K_ab = npm[ab] I, in the order of CorotatedModel::block.
+struct HeldTet {
+    std::uint32_t tet = 0;
+    std::array<double, 10> npm{};
+};
 
 struct CorotatedModel {
     TetMesh mesh;
@@ -31,6 +38,7 @@ struct CorotatedModel {
     std::vector<double> mass_kg;   // per node, lumped
     std::vector<std::int32_t> dof; // first of 3 unknowns of a node; -1: anchored
     int unknowns = 0;
+    std::vector<HeldTet> held;    // springs to the rest place, beside the anchored nodes
     glm::dvec3 gravity_mps2{0.0}; // organs rest under gravity: 0; beams: not
     SparsePattern pattern;
     std::vector<std::array<std::int32_t, 10>> block; // where each tet's blocks go, see .cpp
@@ -62,7 +70,8 @@ struct StepReport {
 /// Throws std::invalid_argument naming the tet or the value.
 CorotatedModel make_corotated(const TetMesh& mesh, const Material& material,
                               std::span<const std::uint8_t> anchored,
-                              const glm::dvec3& gravity_mps2 = glm::dvec3{0.0});
+                              const glm::dvec3& gravity_mps2 = glm::dvec3{0.0},
+                              std::span<const BedSample> bed = {});
 CorotatedState rest_state(const CorotatedModel& model);
 CorotatedSystem make_system(const CorotatedModel& model);
 
@@ -71,7 +80,7 @@ CorotatedSystem make_system(const CorotatedModel& model);
 void linearize(const CorotatedModel& model, const CorotatedState& state, double dt_s,
                CorotatedSystem& system, bool exact = true) noexcept;
 
-/// Elastic force of the tets on every node, anchored ones too, with the sign of f_int.
+/// Elastic force of the tets and the bed on every node, anchored ones too, with the sign of f_int.
 void elastic_forces(const CorotatedModel& model, const CorotatedState& state,
                     std::span<glm::dvec3> force_n) noexcept;
 
@@ -100,7 +109,7 @@ struct StaticReport {
 StaticReport solve_static(const CorotatedModel& model, std::span<const double> load_n,
                           double tolerance, int max_iterations, CorotatedState& state);
 
-/// Elastic energy, J, for tests and the energy ledger.
+/// Elastic energy of tets and bed, J, for tests and the energy ledger.
 double elastic_energy_j(const CorotatedModel& model, const CorotatedState& state) noexcept;
 
 } // namespace tissue

@@ -97,10 +97,29 @@ void add_shapes_and_masses(CorotatedModel& m) {
     }
 }
 
+constexpr std::array<std::array<int, 2>, 10> kPair{
+    {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+
+// Samples of one tet follow each other.
+void add_bed(std::span<const BedSample> bed, CorotatedModel& m) {
+    for (const BedSample& sample : bed) {
+        if (sample.tet >= m.mesh.tets.size())
+            throw std::invalid_argument("the bed names tet " + std::to_string(sample.tet) + " of " +
+                                        std::to_string(m.mesh.tets.size()));
+        if (m.held.empty() || m.held.back().tet != sample.tet)
+            m.held.push_back({sample.tet, {}});
+        for (int k = 0; k < 10; ++k) {
+            m.held.back().npm[k] += m.material.young_pa * sample.stiffness_m *
+                                    sample.weight[kPair[k][0]] * sample.weight[kPair[k][1]];
+        }
+    }
+}
+
 } // namespace
 
 CorotatedModel make_corotated(const TetMesh& mesh, const Material& material,
-                              std::span<const std::uint8_t> anchored, const dvec3& gravity_mps2) {
+                              std::span<const std::uint8_t> anchored, const dvec3& gravity_mps2,
+                              std::span<const BedSample> bed) {
     check_mesh(mesh);
     if (!anchored.empty() && anchored.size() != mesh.rest_m.size()) {
         throw std::invalid_argument("anchors for " + std::to_string(anchored.size()) +
@@ -117,6 +136,7 @@ CorotatedModel make_corotated(const TetMesh& mesh, const Material& material,
     if (m.unknowns == 0)
         throw std::invalid_argument("every node is anchored: nothing can move");
     add_shapes_and_masses(m);
+    add_bed(bed, m);
 
     m.pattern = node_pattern(m.unknowns, later_neighbours(m));
     for (const Tet& t : mesh.tets) {

@@ -96,6 +96,26 @@ struct SparseFactor::Impl {
         }
     }
 
+    // Solves for `columns` right-hand sides, whole (CHOLMOD_A) or forward only (CHOLMOD_L); the
+    // answer, in elimination order, stays in `solution`.
+    const double* solve(int system, std::span<const double> b, std::size_t columns) noexcept {
+        stay_on_this_thread();
+        const std::size_t n = order.size();
+        right = cholmod_ensure_dense(&right, n, columns, n, CHOLMOD_REAL, &common);
+        if (right == nullptr)
+            return nullptr;
+        auto* to = static_cast<double*>(right->x);
+        for (std::size_t c = 0; c < columns; ++c) {
+            for (std::size_t k = 0; k < n; ++k)
+                to[c * n + k] = b[c * n + order[k]];
+        }
+        if (cholmod_solve2(system, factor, right, nullptr, &solution, nullptr, &work_y, &work_e,
+                           &common) == 0) {
+            return nullptr;
+        }
+        return static_cast<const double*>(solution->x);
+    }
+
     void permute(const SparsePattern& pattern) {
         const auto* elimination = static_cast<const int*>(factor->Perm);
         order.assign(elimination, elimination + pattern.size);
@@ -162,26 +182,27 @@ bool SparseFactor::solve(std::span<double> b, int columns) noexcept {
     Impl& s = *impl_;
     if (!s.usable || columns < 1)
         return false;
-    stay_on_this_thread();
     const std::size_t n = s.order.size();
-    s.right = cholmod_ensure_dense(&s.right, n, static_cast<std::size_t>(columns), n, CHOLMOD_REAL,
-                                   &s.common);
-    if (s.right == nullptr)
+    const double* x = s.solve(CHOLMOD_A, b, static_cast<std::size_t>(columns));
+    if (x == nullptr)
         return false;
-    auto* right = static_cast<double*>(s.right->x);
-    for (int c = 0; c < columns; ++c) {
-        for (std::size_t k = 0; k < n; ++k)
-            right[c * n + k] = b[c * n + s.order[k]];
-    }
-    if (cholmod_solve2(CHOLMOD_A, s.factor, s.right, nullptr, &s.solution, nullptr, &s.work_y,
-                       &s.work_e, &s.common) == 0) {
-        return false;
-    }
-    const auto* x = static_cast<const double*>(s.solution->x);
     for (int c = 0; c < columns; ++c) {
         for (std::size_t k = 0; k < n; ++k)
             b[c * n + s.order[k]] = x[c * n + k];
     }
+    return true;
+}
+
+bool SparseFactor::compliances(std::span<const double> b, std::span<double> out) noexcept {
+    Impl& s = *impl_;
+    if (!s.usable || out.empty())
+        return false;
+    const std::size_t n = s.order.size();
+    const double* x = s.solve(CHOLMOD_L, b, out.size());
+    if (x == nullptr)
+        return false;
+    for (std::size_t c = 0; c < out.size(); ++c)
+        out[c] = cblas_ddot(static_cast<int>(n), x + c * n, 1, x + c * n, 1);
     return true;
 }
 

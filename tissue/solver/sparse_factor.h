@@ -33,6 +33,10 @@ class SparseFactor {
     /// `b` unchanged, without a usable factor.
     bool solve(std::span<double> b, int columns) noexcept;
 
+    /// out[c] = b_c^T A^-1 b_c for `columns` columns: |L^-1 b|^2, half of a solve. False, and `out`
+    /// unchanged, without a usable factor.
+    bool compliances(std::span<const double> b, std::span<double> out) noexcept;
+
     std::int64_t factor_entries() const noexcept; // stored, explicit zeros too
 
   private:
