@@ -97,10 +97,11 @@ Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Ma
     tissue::ContactBasis basis = tissue::make_contact_basis(model);
     const std::size_t n = static_cast<std::size_t>(model.unknowns);
     body.soft.emplace(SoftBody{std::move(model), std::move(state), std::move(system),
-                               std::move(basis), std::vector<double>(n * tissue::kMaxBasis),
-                               std::vector<double>(n),
+                               std::move(basis),
+                               tissue::make_skin_frames(skin, body.organ->mesh.rest_m),
+                               std::vector<double>(n * tissue::kMaxBasis), std::vector<double>(n),
                                std::vector<double>(n * 3 * haptics::kTools)});
-    tissue::place_surface(skin, body.organ->mesh.rest_m, body.soft->state.position_m, body.skin_m,
+    tissue::place_surface(skin, body.soft->skin_frame, body.soft->state.position_m, body.skin_m,
                           body.skin_normal);
     return body;
 }

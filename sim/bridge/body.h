@@ -20,6 +20,7 @@ struct SoftBody {
     tissue::CorotatedState state;
     tissue::CorotatedSystem system; // linearised at `state`
     tissue::ContactBasis basis;
+    std::vector<tissue::SkinFrame> skin_frame;
     std::vector<double> shape_by_unknown; // the basis, one line of modes per unknown
     std::vector<double> motion_m;         // du of the step being made
     std::vector<double> answer_m;         // A^-1 of the contact rows, 3 columns a tool

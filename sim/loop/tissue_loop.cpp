@@ -80,7 +80,7 @@ void advance_bodies(TissueRig& rig, const haptics::ContactSolution& solution) no
         } else {
             tissue::follow_tangent(soft.model, soft.motion_m, soft.system);
         }
-        tissue::place_surface(body.organ->surface, body.organ->mesh.rest_m, soft.state.position_m,
+        tissue::place_surface(body.organ->surface, soft.skin_frame, soft.state.position_m,
                               body.skin_m, body.skin_normal);
     }
 }

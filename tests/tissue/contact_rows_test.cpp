@@ -50,7 +50,8 @@ TEST_CASE("a contact point moves as its place on the placed surface does") {
     const std::vector<double> d = bodies::random_unknowns(b.model, 3);
     const auto state = bodies::moved(b.model, tissue::rest_state(b.model), d, 1e-3);
     std::vector<dvec3> position(b.skin.rest_m.size()), normal(position.size());
-    tissue::place_surface(b.skin, b.mesh.rest_m, state.position_m, position, normal);
+    tissue::place_surface(b.skin, tissue::make_skin_frames(b.skin, b.mesh.rest_m), state.position_m,
+                          position, normal);
     const tissue::Triangle& frame = b.skin.frame_node.front();
     for (const std::uint32_t node : frame)
         REQUIRE(b.model.dof[node] < 0);

@@ -57,7 +57,8 @@ TEST_CASE("a skin follows any rigid motion exactly, and so do its normals") {
     const tissue::ContactSurface skin = loose_skin(mesh);
     const std::size_t n = skin.rest_m.size();
     std::vector<dvec3> rest(n), rest_normal(n), placed(n), normal(n);
-    tissue::place_surface(skin, mesh.rest_m, mesh.rest_m, rest, rest_normal);
+    tissue::place_surface(skin, tissue::make_skin_frames(skin, mesh.rest_m), mesh.rest_m, rest,
+                          rest_normal);
 
     CHECK(rc::check("rigid", [&](int a, int b, int c, unsigned turn) {
         const dvec3 axis = glm::normalize(dvec3(a % 100 + 0.5, b % 100, c % 100));
@@ -66,7 +67,7 @@ TEST_CASE("a skin follows any rigid motion exactly, and so do its normals") {
         std::vector<dvec3> x;
         for (const dvec3& p : mesh.rest_m)
             x.push_back(q * p + shift);
-        tissue::place_surface(skin, mesh.rest_m, x, placed, normal);
+        tissue::place_surface(skin, tissue::make_skin_frames(skin, mesh.rest_m), x, placed, normal);
         for (std::size_t v = 0; v < n; ++v) {
             RC_ASSERT(glm::length(placed[v] - (q * skin.rest_m[v] + shift)) < 1e-12);
         }
@@ -93,7 +94,7 @@ TEST_CASE("a stretch without rotation does not turn the offset, whatever edge co
         for (const dvec3& p : corner)
             x.push_back({1.4 * p.x + 0.3 * p.y, 0.3 * p.x + 0.8 * p.y, 0});
         std::vector<dvec3> placed(1), normal(1);
-        tissue::place_surface(s, corner, x, placed, normal);
+        tissue::place_surface(s, tissue::make_skin_frames(s, corner), x, placed, normal);
         CHECK(glm::length(placed[0] - (x[0] + s.offset_m[0])) < 1e-15);
     }
 }
@@ -102,7 +103,8 @@ TEST_CASE("normals of a plate have unit length and face out") {
     const tissue::TetMesh mesh = tissue::box_mesh({0.04, 0.03, 0.03}, {4, 3, 3});
     const tissue::ContactSurface skin = loose_skin(mesh);
     std::vector<dvec3> x(skin.rest_m.size()), normal(x.size());
-    tissue::place_surface(skin, mesh.rest_m, mesh.rest_m, x, normal);
+    tissue::place_surface(skin, tissue::make_skin_frames(skin, mesh.rest_m), mesh.rest_m, x,
+                          normal);
     for (std::size_t v = 0; v < x.size(); ++v) {
         CHECK(glm::length(normal[v]) == doctest::Approx(1.0).epsilon(1e-14));
         const dvec3 p = skin.rest_m[v];

@@ -39,23 +39,22 @@ bool triangle_frame(const dvec3& a, const dvec3& b, const dvec3& c, dmat3& frame
     return true;
 }
 
-// Rotation of a triangle from rest to x: its normal turns into the new normal, and within the
-// plane it turns by the rotation part of the in-plane deformation gradient
-// F = [1 s; 0 t] scaled by the first edge, whose angle is atan2(F10 - F01, F00 + F11).
-dmat3 triangle_rotation(const std::array<dvec3, 3>& rest, const std::array<dvec3, 3>& x) noexcept {
-    dmat3 from, to;
-    if (!triangle_frame(rest[0], rest[1], rest[2], from) || !triangle_frame(x[0], x[1], x[2], to)) {
-        return dmat3(1.0);
-    }
-    // in-plane coordinates: first edge (p, 0), second edge (q, r)
-    const double p0 = glm::dot(rest[1] - rest[0], from[0]), p1 = glm::dot(x[1] - x[0], to[0]);
-    const double q0 = glm::dot(rest[2] - rest[0], from[0]), q1 = glm::dot(x[2] - x[0], to[0]);
-    const double r0 = glm::dot(rest[2] - rest[0], from[1]), r1 = glm::dot(x[2] - x[0], to[1]);
-    const double f00 = p1 / p0, f11 = r1 / r0, f01 = (q1 - f00 * q0) / r0;
-    const double size = std::hypot(f00 + f11, f01);
+// The offset of a skin vertex turned with its frame triangle: the triangle's normal turns into the
+// new normal, and within the plane it turns by the rotation part of the in-plane deformation
+// gradient F = [f00 f01; 0 f11], whose angle is atan2(-f01, f00 + f11).
+dvec3 turned_offset(const SkinFrame& rest, const dvec3& offset_m, const dvec3& a, const dvec3& b,
+                    const dvec3& c) noexcept {
+    dmat3 to;
+    if (rest.edge_1pm == 0.0 || !triangle_frame(a, b, c, to))
+        return offset_m;
+    const double f00 = glm::dot(b - a, to[0]) * rest.edge_1pm;
+    const double f11 = glm::dot(c - a, to[1]) * rest.height_1pm;
+    const double f01 =
+        glm::dot(c - a, to[0]) * rest.height_1pm - glm::dot(b - a, to[0]) * rest.skew;
+    const double size = std::sqrt((f00 + f11) * (f00 + f11) + f01 * f01);
     const double cosine = (f00 + f11) / size, sine = -f01 / size;
-    const dmat3 turned{cosine * to[0] + sine * to[1], cosine * to[1] - sine * to[0], to[2]};
-    return turned * glm::transpose(from);
+    const dvec3& o = rest.offset_m;
+    return (cosine * o.x - sine * o.y) * to[0] + (sine * o.x + cosine * o.y) * to[1] + o.z * to[2];
 }
 
 } // namespace
@@ -105,7 +104,26 @@ std::vector<std::array<std::int32_t, 3>> triangle_neighbours(std::span<const Tri
     return neighbours;
 }
 
-void place_surface(const ContactSurface& surface, std::span<const dvec3> rest_node_m,
+std::vector<SkinFrame> make_skin_frames(const ContactSurface& surface,
+                                        std::span<const dvec3> rest_node_m) {
+    std::vector<SkinFrame> frames;
+    for (std::size_t v = 0; v < surface.frame_node.size(); ++v) {
+        const auto [i, j, k] = surface.frame_node[v];
+        const dvec3 &a = rest_node_m[i], &b = rest_node_m[j], &c = rest_node_m[k];
+        SkinFrame frame{.offset_m = surface.offset_m[v]};
+        dmat3 from;
+        if (triangle_frame(a, b, c, from)) {
+            frame.edge_1pm = 1.0 / glm::dot(b - a, from[0]);
+            frame.height_1pm = 1.0 / glm::dot(c - a, from[1]);
+            frame.skew = frame.edge_1pm * glm::dot(c - a, from[0]) * frame.height_1pm;
+            frame.offset_m = glm::transpose(from) * surface.offset_m[v];
+        }
+        frames.push_back(frame);
+    }
+    return frames;
+}
+
+void place_surface(const ContactSurface& surface, std::span<const SkinFrame> frames,
                    std::span<const dvec3> node_m, std::span<dvec3> position_m,
                    std::span<dvec3> normal) noexcept {
     // rigid scenery has no rows: it stays where it is
@@ -120,11 +138,9 @@ void place_surface(const ContactSurface& surface, std::span<const dvec3> rest_no
         for (std::uint32_t k = surface.row_start[v]; k < surface.row_start[v + 1]; ++k) {
             carried += surface.row_weight[k] * node_m[surface.row_node[k]];
         }
-        const std::array<std::uint32_t, 3>& f = surface.frame_node[v];
-        const dmat3 turn =
-            triangle_rotation({rest_node_m[f[0]], rest_node_m[f[1]], rest_node_m[f[2]]},
-                              {node_m[f[0]], node_m[f[1]], node_m[f[2]]});
-        position_m[v] = carried + turn * surface.offset_m[v];
+        const auto [i, j, k] = surface.frame_node[v];
+        position_m[v] = carried + turned_offset(frames[v], surface.offset_m[v], node_m[i],
+                                                node_m[j], node_m[k]);
     }
 
     // area-weighted normals of the surface as placed
