@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 
 namespace haptics {
 namespace {
@@ -16,20 +15,6 @@ glm::dvec3 no_force(LimitState& state) noexcept {
     state.ramp = 0.0;
     state.last_n = glm::dvec3{0.0};
     return state.last_n;
-}
-
-// Largest eigenvalue of a symmetric matrix (Smith 1961).
-double largest_eigenvalue(const glm::dmat3& A) noexcept {
-    const double q = (A[0][0] + A[1][1] + A[2][2]) / 3.0;
-    const glm::dmat3 B = A - glm::dmat3{q};
-    double squares = 0.0;
-    for (int column = 0; column < 3; ++column)
-        squares += glm::dot(B[column], B[column]);
-    const double p = std::sqrt(squares / 6.0);
-    if (!(p > 0.0))
-        return q;
-    const double r = std::clamp(0.5 * glm::determinant(B / p), -1.0, 1.0);
-    return q + 2.0 * p * std::cos(std::acos(r) / 3.0);
 }
 
 } // namespace
@@ -74,14 +59,6 @@ glm::dvec3 limit_force(LimitState& state, const LimitConfig& config, const glm::
 void resume(LimitState& state) noexcept {
     state.enabled = true;
     no_force(state);
-}
-
-double stiffness_scale(const DeviceInfo& info, const glm::dmat3& jacobian, double tip_stiffness_npm,
-                       double tick_s) noexcept {
-    const double felt_npm =
-        tip_stiffness_npm * largest_eigenvalue(glm::transpose(jacobian) * jacobian);
-    const double most_npm = 0.8 * 2.0 * info.damping_nspm / tick_s;
-    return felt_npm > most_npm ? most_npm / felt_npm : 1.0;
 }
 
 void observe_energy(EnergyObserver& observer, const glm::dvec3& x_m,

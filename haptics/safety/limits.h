@@ -1,12 +1,11 @@
 // haptics/safety/limits.h
-// The last thing between a computed force and a hand: what is not finite becomes zero, stiffness
-// stays inside what the device's damping can hold, length and slew are bounded, and force comes
-// back on a ramp after start, resume and every fault. Device frame. Real-time safe.
+// The last thing between a computed force and a hand: what is not finite becomes zero, length and
+// slew are bounded, and force comes back on a ramp after start, resume and every fault. (Stiffness
+// is bounded where it is made: by the floor of the contact's compliance.) Device frame. Real-time
+// safe.
 #pragma once
 
 #include "haptics/device/device.h"
-
-#include <glm/mat3x3.hpp>
 
 namespace haptics {
 
@@ -17,8 +16,6 @@ struct LimitConfig {
     double tick_s = 1e-3;
     int clean_reads_to_resume = 50; // after a fault
 };
-
-enum class LimitEvent : std::uint8_t { none, not_finite, saturated, slewed, ramping, faulted };
 
 struct LimitState {
     glm::dvec3 last_n{0.0};
@@ -39,11 +36,6 @@ glm::dvec3 limit_force(LimitState& state, const LimitConfig& config, const glm::
 
 /// Start the ramp again from zero (start of an attempt, resume after pause or Esc).
 void resume(LimitState& state) noexcept;
-
-/// Largest factor in (0,1] for tip forces so that the stiffness felt at the handle,
-/// J^T K J with K = tip_stiffness_npm I, stays below 0.8 x 2b/T (Colgate & Schenkel 1997).
-double stiffness_scale(const DeviceInfo& info, const glm::dmat3& jacobian, double tip_stiffness_npm,
-                       double tick_s) noexcept;
 
 /// Energy the port has taken in minus given out, J; below zero it has been a source. For a force
 /// held between ticks W_k = W_{k-1} - F_{k-1}.(x_k - x_{k-1}) (Hannaford & Ryu 2002). Observer

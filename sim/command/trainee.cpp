@@ -2,11 +2,10 @@
 // trocar trainee add|list|delete and trocar note: the instructor's side of the logbook.
 #include "sim/command/commands.h"
 #include "sim/io/files.h"
-#include "tasks/logbook/logbook.h"
+#include "tasks/logbook/summary.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace sim {
 namespace {
@@ -22,16 +21,9 @@ std::string station_db() {
 
 void list(const TraineeArguments& a) {
     tasks::Logbook logbook(a.db);
-    nlohmann::ordered_json all = nlohmann::ordered_json::array();
-    for (const auto& t : logbook.trainees()) {
-        if (a.json) {
-            all.push_back({{"id", t.id}, {"name", t.name}, {"attempts", t.attempts}});
-        } else {
-            fmt::print("{}  {:>4} attempts  {}\n", t.id, t.attempts, t.name);
-        }
-    }
-    if (a.json)
-        fmt::print("{}\n", nlohmann::ordered_json{{"trainees", all}}.dump());
+    const auto trainees = tasks::summarise(logbook);
+    fmt::print("{}{}", a.json ? tasks::summary_json(trainees) : tasks::summary_text(trainees),
+               a.json ? "\n" : "");
 }
 
 void remove(const TraineeArguments& a) {
@@ -53,7 +45,8 @@ void add_trainee(CLI::App& app, int&) {
     c->require_subcommand(1);
     CLI::App* add = c->add_subcommand("add", "Add a trainee; prints the pseudonymous id");
     add->add_option("name", a->name, "Name, kept in a file of its own")->required();
-    CLI::App* show = c->add_subcommand("list", "All trainees");
+    CLI::App* show =
+        c->add_subcommand("list", "Who has done what: attempts with their key metrics");
     show->add_flag("--json", a->json, "One JSON object instead of a table");
     CLI::App* gone = c->add_subcommand("delete", "Forget a trainee's name for ever");
     gone->add_option("id", a->name, "Id or name")->required();

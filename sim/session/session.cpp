@@ -3,6 +3,8 @@
 #include "sim/io/files.h"
 
 #include <cmath>
+#include <ctime>
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <openssl/opensslv.h>
@@ -122,6 +124,7 @@ tasks::SessionRow session_row(const std::string& input_class) {
 tasks::AttemptRow attempt_row(const Session& session, bool realtime) {
     tasks::AttemptRow row;
     row.trainee = session.options.trainee;
+    row.started_utc = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
     row.exercise = session.exercise.id;
     row.exercise_text = session.exercise_text;
     row.scene_text = session.scene.scene.text;

@@ -125,23 +125,6 @@ TEST_CASE("limits: whatever comes in, what goes out is finite, short and slow") 
     }));
 }
 
-TEST_CASE("limits: the lever squared counts against the stiffness a device can hold") {
-    haptics::DeviceInfo info;
-    info.damping_nspm = 0.5; // 0.8 * 2 b / T = 800 N/m
-    const glm::dmat3 turned{{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}};
-    CHECK(haptics::stiffness_scale(info, turned, 799.0, 1e-3) == 1.0);
-    CHECK(haptics::stiffness_scale(info, turned, 1600.0, 1e-3) == doctest::Approx(0.5));
-    // J = u u^T - 4 (I - u u^T) with a crooked u: 16 times the stiffness across
-    const glm::dvec3 u = glm::normalize(glm::dvec3{1, 2, -2});
-    const glm::dmat3 along = glm::outerProduct(u, u);
-    const glm::dmat3 lever = along - 4.0 * (glm::dmat3{1.0} - along);
-    CHECK(haptics::stiffness_scale(info, lever, 100.0, 1e-3) == doctest::Approx(0.5));
-    // three different stretches, shear: largest of J^T J, by its characteristic polynomial
-    const glm::dmat3 shear{{1, 0, 0}, {1, 1, 0}, {0, 0, 0.5}}; // eigenvalues (3 +- sqrt 5)/2, 1/4
-    CHECK(haptics::stiffness_scale(info, shear, 1000.0, 1e-3) ==
-          doctest::Approx(0.8 / (0.5 * (3.0 + std::sqrt(5.0)))));
-}
-
 TEST_CASE("limits: a sampled spring gives out K X dx a cycle, and the observer sees it") {
     // F_k = -K x_k held over n equal steps dx out to X and back: taken in n(n-1)/2 K dx^2,
     // given out n(n+1)/2 K dx^2

@@ -80,9 +80,7 @@ TEST_CASE("no allocation: from device sample to limited force") {
     for (int tick = 0; tick < 50; ++tick) {
         const haptics::DeviceFault fault = device.read(sample);
         const haptics::ShaftPose pose = haptics::shaft_pose({}, device.handle_m());
-        const glm::dvec3 wanted_n =
-            haptics::stiffness_scale(device.info(), pose.jacobian, 300.0, 1e-3) *
-            haptics::force_at_handle(pose, {0.1, 0, 0.2});
+        const glm::dvec3 wanted_n = haptics::force_at_handle(pose, {0.1, 0, 0.2});
         const glm::dvec3 force_n = haptics::limit_force(limits, {}, wanted_n, fault);
         haptics::observe_energy(observer, device.handle_m(), force_n);
         device.write(force_n);

@@ -49,6 +49,20 @@ TEST_CASE("lockstep: the same seed gives the same hash, another seed another") {
     CHECK(first.size() == 64);
 }
 
+TEST_CASE("lockstep: the logbook says when an attempt began, and the hash does not") {
+    const TemporaryLog log;
+    tasks::Logbook logbook(log.path());
+    std::int64_t id = 0;
+    sim::RunOptions options = short_run(3);
+    options.max_seconds = 1.0;
+    const std::string hash = perform(options, &logbook, &id).row.log_sha256;
+    const auto row = logbook.attempt(id);
+    REQUIRE(row);
+    CHECK(row->started_utc.size() == std::string("2026-01-01T00:00:00Z").size());
+    CHECK(row->started_utc.back() == 'Z');
+    CHECK(hash == perform(options).row.log_sha256); // begun at another moment
+}
+
 TEST_CASE("lockstep: no rig fault, and the tools do touch the tissue") {
     const sim::Attempt::Outcome outcome = perform(short_run(3));
     CHECK(outcome.row.valid);

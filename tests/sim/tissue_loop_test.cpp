@@ -7,6 +7,7 @@
 #include <cmath>
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 namespace {
 
@@ -106,6 +107,26 @@ TEST_CASE("tissue loop: after release the organ comes back to rest exactly where
         bench.step();
     CHECK(bench.rig.bodies[0].soft->resting);
     CHECK(glm::distance(sim::place_on(bench.rig.bodies[0], bench.at), bench.place) < 1e-6);
+}
+
+TEST_CASE("tissue loop: whatever the lever, no contact feels stiffer than the device can hold") {
+    // J^T Kc J with Kc = 1 / floor: its largest eigenvalue, by power iteration, is at most 2b/T x
+    // 0.8
+    const haptics::Trocar trocar{.fulcrum_m = {0.02, -0.01, 0.15}};
+    double most = 0.0;
+    for (const glm::dvec3& handle : {glm::dvec3{0.05, 0.02, 0.45}, glm::dvec3{0.02, -0.01, 0.25},
+                                     glm::dvec3{-0.1, 0.15, 0.2}, glm::dvec3{0.03, 0, 0.2}}) {
+        const haptics::ShaftPose pose = haptics::shaft_pose(trocar, handle);
+        const double stiffness_npm = 1.0 / sim::coupling_floor_mpn(pose, 800.0);
+        const glm::dmat3 felt = stiffness_npm * glm::transpose(pose.jacobian) * pose.jacobian;
+        glm::dvec3 v{0.3, 0.5, 0.8};
+        for (int i = 0; i < 200; ++i)
+            v = glm::normalize(felt * v);
+        const double largest_npm = glm::length(felt * v);
+        CHECK(largest_npm <= 800.0 * (1.0 + 1e-9));
+        most = std::max(most, largest_npm);
+    }
+    CHECK(most > 0.99 * 800.0); // and it is not simply soft
 }
 
 TEST_CASE("tissue loop: two tools on one organ share its modes and feel each other") {
