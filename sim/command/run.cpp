@@ -2,6 +2,7 @@
 // trocar run: one scripted attempt, lockstep or real time, with expectations and JUnit.
 #include "sim/command/commands.h"
 #include "sim/command/report.h"
+#include "sim/command/stage.h"
 #include "sim/io/files.h"
 #include "sim/io/guard.h"
 #include "sim/session/session.h"
@@ -19,7 +20,7 @@ namespace {
 struct RunArguments {
     RunOptions options;
     std::string coupling = "anchored", model = "corotated", log, junit;
-    bool realtime = false, json = false, no_noise = false, no_forces = false;
+    bool realtime = false, window = false, json = false, no_noise = false, no_forces = false;
     double seconds = 0.0;
 };
 
@@ -35,6 +36,29 @@ std::vector<tasks::ExpectationResult> judge(const RunArguments& a, const Attempt
     return results;
 }
 
+// Threads and deadlines; with a window the picture is drawn here, and no loop waits for it.
+Attempt::Outcome perform_in_real_time(const RunArguments& a, Session& session, tasks::Logbook* log,
+                                      std::int64_t id) {
+    if (!a.window) {
+        return run_realtime(session, log, id, a.seconds, [](Exchange&) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(16));
+            return !asked_to_stop();
+        });
+    }
+    leave_cores_to_the_loops();
+    view::Window window({.title = "Trocar: trocar run"});
+    view::Screens screens;
+    screens.screen = view::Screen::demo;
+    Stage stage(session, false, 1);
+    session.exchange->surface_wanted = true;
+    return run_realtime(session, log, id, a.seconds, [&](Exchange& exchange) {
+        const view::UserInput input = window.draw(stage.frame(exchange), screens);
+        if (input.zero_forces)
+            exchange.zero_forces = true;
+        return !asked_to_stop() && input.action != view::Action::quit;
+    });
+}
+
 Attempt::Outcome perform(const RunArguments& a, Session& session) {
     std::optional<tasks::Logbook> logbook;
     std::int64_t id = 0;
@@ -45,12 +69,8 @@ Attempt::Outcome perform(const RunArguments& a, Session& session) {
         id = logbook->begin_attempt(row);
     }
     tasks::Logbook* log = logbook ? &*logbook : nullptr;
-    if (!a.realtime)
-        return run_lockstep(session, log, id, asked_to_stop);
-    return run_realtime(session, log, id, a.seconds, [](Exchange&) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(16));
-        return !asked_to_stop();
-    });
+    return a.realtime ? perform_in_real_time(a, session, log, id)
+                      : run_lockstep(session, log, id, asked_to_stop);
 }
 
 void run(const RunArguments& a, int& exit_code) {
@@ -104,6 +124,7 @@ void add_run(CLI::App& app, int& exit_code) {
     c->add_option("--log", a->log, "Logbook to write the attempt to");
     c->add_option("--junit", a->junit, "Write the script's expectations as JUnit XML");
     c->add_flag("--realtime", a->realtime, "Threads and deadlines instead of lockstep");
+    c->add_flag("--window", a->window, "With --realtime: draw it, too")->needs("--realtime");
     c->add_option("--seconds", a->seconds, "With --realtime: stop after this long");
     c->add_flag("--no-noise", a->no_noise, "The hand makes no errors");
     c->add_flag("--no-forces", a->no_forces, "Forces off: positions only");

@@ -2,6 +2,7 @@
 #include "sim/command/stage.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
@@ -149,6 +150,10 @@ void Stage::steer(const view::UserInput& input, double frame_s, Exchange& exchan
     goals_.jaw[active_] = input.jaw_closed || input.button[0] ? 1.0 : 0.0;
     exchange.pointer.back() = goals_;
     exchange.pointer.publish();
+}
+
+void leave_cores_to_the_loops() {
+    setenv("LP_NUM_THREADS", "1", 0);
 }
 
 view::ScoreModel score_model(const Attempt::Outcome& outcome, const std::string& saved) {

@@ -33,6 +33,9 @@ class Stage {
     ProgressNow progress_;
 };
 
+/// A software renderer takes every core by default, the 1 kHz loop's too: call before a window.
+void leave_cores_to_the_loops();
+
 /// Score screen for an outcome.
 view::ScoreModel score_model(const Attempt::Outcome& outcome, const std::string& saved);
 

@@ -8,7 +8,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdlib>
 #include <fmt/format.h>
 
 namespace sim {
@@ -207,8 +206,7 @@ void add_train(CLI::App& app, int&) {
     c->add_option("--shot-seconds", a->shot_seconds, "Between the exercise's pictures");
     c->callback([a] {
         install_signal_guard();
-        // a software renderer takes every core by default, the 1 kHz loop's too
-        setenv("LP_NUM_THREADS", "1", 0);
+        leave_cores_to_the_loops();
         if (!a->shots.empty())
             std::filesystem::create_directories(a->shots);
         Trainer trainer(*a);
