@@ -9,6 +9,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -56,15 +57,19 @@ void write_all(int fd, const void* data, std::size_t size) {
     _exit(0); // no destructors, no exit handlers: they are the parent's
 }
 
-/// Reads until the child closes its end; false when the time is up.
-bool read_until(int fd, Clock::time_point end, std::vector<std::byte>& bytes) {
+/// Reads until the child closes its end; false when the time is up or `stop` is set.
+bool read_until(int fd, Clock::time_point end, const volatile std::sig_atomic_t* stop,
+                std::vector<std::byte>& bytes) {
+    constexpr double kLookAtStop_ms = 200.0;
+    const double longest_ms = stop != nullptr ? kLookAtStop_ms : 1e6;
     for (;;) {
         const double left_s = std::chrono::duration<double>(end - Clock::now()).count();
-        if (left_s <= 0.0) {
+        if (left_s <= 0.0 || (stop != nullptr && *stop != 0)) {
             return false;
         }
         pollfd wait{fd, POLLIN, 0};
-        const int ready = poll(&wait, 1, static_cast<int>(std::min(std::ceil(left_s * 1e3), 1e6)));
+        const int ready =
+            poll(&wait, 1, static_cast<int>(std::min(std::ceil(left_s * 1e3), longest_ms)));
         if (ready <= 0) {
             continue; // time is looked at above; EINTR comes here too
         }
@@ -80,7 +85,8 @@ bool read_until(int fd, Clock::time_point end, std::vector<std::byte>& bytes) {
 
 } // namespace
 
-ChildAnswer run_in_child(const std::function<std::vector<std::byte>()>& work, double limit_s) {
+ChildAnswer run_in_child(const std::function<std::vector<std::byte>()>& work, double limit_s,
+                         const volatile std::sig_atomic_t* stop) {
     ChildAnswer answer;
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) {
@@ -88,9 +94,16 @@ ChildAnswer run_in_child(const std::function<std::vector<std::byte>()>& work, do
         return answer;
     }
     const auto start = Clock::now();
-    const pid_t child = fork();
+    const pid_t parent = getpid(), child = fork();
     if (child == 0) {
         close(ends[0]);
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        if (getppid() != parent) {
+            _exit(1); // it ended in between
+        }
+        if (stop != nullptr) {
+            setpgid(0, 0);
+        }
         child_main(work, ends[1]);
     }
     close(ends[1]);
@@ -102,9 +115,12 @@ ChildAnswer run_in_child(const std::function<std::vector<std::byte>()>& work, do
 
     const auto end =
         start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit_s));
-    const bool in_time = read_until(ends[0], end, answer.bytes);
+    if (stop != nullptr) {
+        setpgid(child, child); // here too: whoever comes first
+    }
+    const bool in_time = read_until(ends[0], end, stop, answer.bytes);
     if (!in_time) {
-        kill(child, SIGKILL);
+        kill(stop != nullptr ? -child : child, SIGKILL);
     }
     close(ends[0]);
     int status = 0;
@@ -112,7 +128,10 @@ ChildAnswer run_in_child(const std::function<std::vector<std::byte>()>& work, do
     }
     answer.seconds = std::chrono::duration<double>(Clock::now() - start).count();
 
-    if (!in_time) {
+    answer.crashed = in_time && WIFSIGNALED(status);
+    if (!in_time && stop != nullptr && *stop != 0) {
+        answer.reason = "interrupted";
+    } else if (!in_time) {
         answer.reason = fmt::format("not done within {} s", limit_s);
     } else if (WIFSIGNALED(status)) {
         answer.reason = fmt::format("crashed with signal {}", WTERMSIG(status));

@@ -1,9 +1,10 @@
-// bake: recipe to baked organ, at build time or by hand. One thread; TetGen in a child process.
+// bake: recipe to baked organ, at build time or by hand; and surface file to organs (import_main). One thread; TetGen in a child process.
 //
 // Licence: this source is Apache-2.0 like the rest, but the program links TetGen, which is
 // AGPL-3.0-or-later; the built program may be passed on under the AGPL-3.0 only. What it writes is
 // not bound by that. The trainer itself does not link TetGen.
 #include "assets/bake/bake.h"
+#include "assets/bake/import/import_main.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -79,9 +80,13 @@ void run(const Arguments& a) {
 } // namespace
 
 int main(int argc, char** argv) {
+    if (argc > 1 && std::string_view(argv[1]) == "import") {
+        return bake::import_main(argc - 1, argv + 1);
+    }
     Arguments a;
     CLI::App app{"Bakes an organ: recipe to tetrahedra, skin and footprints.\n"
-                 "Exit 0: done; 1: refused, with the reason; 2: bad usage or bad recipe."};
+                 "Exit 0: done; 1: refused, with the reason; 2: bad usage or bad recipe.\n"
+                 "bake import SURFACE: a surface file to organs; see bake import --help."};
     app.add_option("recipe", a.recipe, "TOML file")->required()->type_name("RECIPE.toml");
     app.add_option("--out", a.out, "baked organ to write")->required()->type_name("FILE.organ");
     app.add_option("--report", a.report, "write the report as JSON")->type_name("FILE.json");

@@ -2,6 +2,8 @@
 
 #include "assets/bake/recipe_table.h"
 
+#include <fmt/format.h>
+
 namespace bake {
 namespace {
 
@@ -91,12 +93,8 @@ void read_fine(const Table& top, Recipe& recipe) {
     }
 }
 
-void read_material(const Table& top, Recipe& recipe) {
-    if (!top.has("material")) {
-        return;
-    }
-    const Table t = top.table("material");
-    tissue::Material& m = recipe.material;
+tissue::Material read_material(const Table& t) {
+    tissue::Material m;
     m.young_pa = t.number("young_pa", 1.0, 1e9, m.young_pa);
     m.poisson = t.number("poisson", 0.0, 0.499, m.poisson);
     m.density_kgpm3 = t.number("density_kgpm3", 1.0, 1e5, m.density_kgpm3);
@@ -105,6 +103,7 @@ void read_material(const Table& top, Recipe& recipe) {
     m.friction = t.number("friction", 0.0, 2.0, m.friction);
     m.source = t.text("source");
     t.no_other_keys();
+    return m;
 }
 
 std::uint64_t fnv1a(std::string_view text) {
@@ -143,9 +142,25 @@ Recipe parse_recipe(const std::string& text, const std::string& file_name) {
         read_anchors(top, recipe);
         read_fine(top, recipe);
     }
-    read_material(top, recipe);
+    if (top.has("material")) {
+        recipe.material = read_material(top.table("material"));
+    }
     top.no_other_keys();
     return recipe;
+}
+
+tissue::Material find_material(const std::string& text, const std::string& file_name,
+                               const std::string& name) {
+    const Table all = Table::parse(text, file_name);
+    if (!all.has(name.c_str())) {
+        std::string names;
+        for (const auto& key : all.keys()) {
+            names += (names.empty() ? "" : ", ") + key;
+        }
+        throw RecipeError(fmt::format("{}: there is no material \"{}\": accepted: {}", file_name,
+                                      name, names));
+    }
+    return read_material(all.table(name.c_str()));
 }
 
 } // namespace bake

@@ -170,6 +170,14 @@ std::vector<Table> Table::tables(const char* key) const {
     return list;
 }
 
+std::vector<std::string> Table::keys() const {
+    std::set<std::string> names;
+    for (const auto& [key, value] : state_->value.as_table()) {
+        names.insert(key);
+    }
+    return {names.begin(), names.end()};
+}
+
 void Table::no_other_keys() const {
     std::set<std::string> present; // sorted: the same file always gives the same message
     for (const auto& [key, value] : state_->value.as_table()) {

@@ -30,6 +30,8 @@ class Table {
     [[nodiscard]] Table table(const char* key) const;
     [[nodiscard]] std::vector<Table> tables(const char* key) const; // none if absent
 
+    [[nodiscard]] std::vector<std::string> keys() const; // sorted
+
     /// Throws RecipeError if the table has a key that none of the above was called with.
     void no_other_keys() const;
     [[noreturn]] void refuse(const char* key, const std::string& accepted) const;

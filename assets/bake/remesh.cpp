@@ -217,10 +217,24 @@ Surface remesh(const Surface& shape, const SizeAt& size, const RemeshOptions& op
     return make_surface(mesh);
 }
 
+Surface coarsen(const Surface& shape, double edge_m) {
+    constexpr int kRounds = 12; // each takes about half of what is too short
+    Mesh mesh = make_half_edges(shape);
+    const SizeAt size = [edge_m](const glm::dvec3&) { return edge_m / kShort; };
+    for (int round = 0; round < kRounds; ++round) {
+        const std::size_t before = mesh.n_faces();
+        collapse_short(mesh, size);
+        if (mesh.n_faces() > before - before / 50) {
+            break;
+        }
+    }
+    return make_surface(mesh);
+}
+
 SizeAt curvature_size(const Surface& shape, double edge_m, double radii, double share) {
     // curvature along each edge: change of normal over length
     const auto normal = vertex_normals(shape);
-    auto size = std::make_shared<std::vector<double>>(shape.point_m.size(), edge_m);
+    std::vector<double> size(shape.point_m.size(), edge_m);
     const double least_m = share * edge_m;
     for (const auto& t : shape.triangles) {
         for (std::size_t k = 0; k < 3; ++k) {
@@ -229,10 +243,15 @@ SizeAt curvature_size(const Surface& shape, double edge_m, double radii, double 
             const double bend = glm::length(normal[b] - normal[a]);
             const double wanted = bend > 0.0 ? radii * length / bend : edge_m;
             for (const auto v : {a, b}) {
-                (*size)[v] = std::clamp(wanted, least_m, (*size)[v]);
+                size[v] = std::clamp(wanted, least_m, size[v]);
             }
         }
     }
+    return graded_size(shape, std::move(size));
+}
+
+SizeAt graded_size(const Surface& shape, std::vector<double> size_m) {
+    const auto size = std::make_shared<std::vector<double>>(std::move(size_m));
     // let it grow slowly along the surface, until nothing changes
     for (bool changed = true; changed;) {
         changed = false;

@@ -16,8 +16,16 @@ struct RemeshOptions {
 /// `shape` must be closed and manifold (check_surface); the result is too.
 Surface remesh(const Surface& shape, const SizeAt& size, const RemeshOptions& options);
 
+/// Collapses edges shorter than `edge_m` onto points that are there, as long as no triangle turns
+/// by more than 60 degrees: far fewer triangles, quickly, from a scan that is finer than wanted.
+Surface coarsen(const Surface& shape, double edge_m);
+
 /// Wanted edge length: `edge_m`, but no longer than `radii` times the smallest radius of
 /// curvature of `shape`, never below share * edge_m; grows by at most 0.5 per unit of distance.
 SizeAt curvature_size(const Surface& shape, double edge_m, double radii, double share);
+
+/// A size for every point of `shape`, made to grow by at most 0.5 per unit of distance along it,
+/// and interpolated from the nearest place on it.
+SizeAt graded_size(const Surface& shape, std::vector<double> size_m);
 
 } // namespace bake

@@ -65,9 +65,24 @@ template <class T> void put(std::vector<std::byte>& bytes, const T* data, std::s
     bytes.insert(bytes.end(), first, first + count * sizeof(T));
 }
 
-std::vector<std::byte> run_tetgen(const Surface& boundary, std::string switches) {
+void fill_cavities(const std::vector<glm::dvec3>& cavity_m, tetgenio& in) {
+    if (cavity_m.empty()) {
+        return;
+    }
+    in.numberofholes = static_cast<int>(cavity_m.size());
+    in.holelist = new REAL[cavity_m.size() * 3];
+    for (std::size_t i = 0; i < cavity_m.size(); ++i) {
+        for (int d = 0; d < 3; ++d) {
+            in.holelist[3 * i + d] = kScale * cavity_m[i][d];
+        }
+    }
+}
+
+std::vector<std::byte> run_tetgen(const Surface& boundary, const std::vector<glm::dvec3>& cavity_m,
+                                  std::string switches) {
     tetgenio in, out;
     fill_input(boundary, in);
+    fill_cavities(cavity_m, in);
     try {
         tetrahedralize(switches.data(), &in, &out);
     } catch (const int code) {
@@ -164,7 +179,7 @@ TetAnswer tetrahedralise(const Surface& boundary, const TetOptions& o) {
     TetAnswer answer;
     for (const auto& [what, switches] : chain) {
         const ChildAnswer child =
-            run_in_child([&] { return run_tetgen(boundary, switches); }, o.time_limit_s);
+            run_in_child([&] { return run_tetgen(boundary, o.cavity_m, switches); }, o.time_limit_s);
         answer.attempts.push_back({what, child.done ? "done" : child.reason, child.seconds});
         if (child.done) {
             answer.mesh = unpack(child.bytes);

@@ -1,0 +1,127 @@
+#include "assets/bake/import/boundary.h"
+
+#include "assets/bake/fit.h"
+#include "assets/bake/import/crossing.h"
+#include "assets/bake/import/distance.h"
+#include "assets/bake/import/size_field.h"
+#include "assets/bake/nearest.h"
+#include "assets/bake/remesh.h"
+
+#include <algorithm>
+
+namespace bake {
+namespace {
+
+constexpr int kTries = 8;
+constexpr int kFitRounds = 20;
+constexpr double kFiner = 0.65;    // of the edge at a place that went wrong
+constexpr double kMm = 1e-3;
+constexpr std::size_t kMostSpots = 200;
+
+/// Moves all points along their normals until the volume is right; first order, twice.
+void hold_volume(Surface& s, double wanted_m3) {
+    for (int round = 0; round < 2; ++round) {
+        const double offset_m = (wanted_m3 - volume_m3(s)) / area_m2(s);
+        const auto normal = vertex_normals(s);
+        for (std::size_t v = 0; v < s.point_m.size(); ++v) {
+            s.point_m[v] += offset_m * normal[v];
+        }
+    }
+}
+
+/// Places on `from` that are too far from `to`, a spot's width apart.
+void find_far(const Surface& from, const Surface& to, double farthest_m,
+              std::vector<glm::dvec3>& places) {
+    const NearestOnSurface nearest(to);
+    for (const auto& t : from.triangles) {
+        const glm::dvec3 middle =
+            (from.point_m[t[0]] + from.point_m[t[1]] + from.point_m[t[2]]) / 3.0;
+        for (const auto& p : {from.point_m[t[0]], middle}) {
+            const bool far = nearest(p).distance_m > farthest_m;
+            const bool near_another =
+                std::any_of(places.begin(), places.end(), [&](const glm::dvec3& q) {
+                    return glm::length(p - q) < 2.0 * farthest_m;
+                });
+            if (far && !near_another) {
+                places.push_back(p);
+            }
+        }
+    }
+}
+
+FineSpot finer_here(const glm::dvec3& p_m, const SizeAt& size) {
+    const double now_mm = size(p_m) / kMm;
+    return {.centre_mm = p_m / kMm, .radius_mm = now_mm, .edge_mm = kFiner * now_mm};
+}
+
+} // namespace
+
+SizeAt with_spots(SizeAt base, std::vector<FineSpot> spots) {
+    if (spots.empty()) {
+        return base;
+    }
+    return [base = std::move(base), spots = std::move(spots)](const glm::dvec3& p_m) {
+        double size_m = base(p_m);
+        for (const auto& s : spots) {
+            const double beyond_mm =
+                std::max(0.0, glm::length(p_m / kMm - s.centre_mm) - s.radius_mm);
+            size_m = std::min(size_m, kMm * (s.edge_mm + s.growth * beyond_mm));
+        }
+        return size_m;
+    };
+}
+
+Boundary make_boundary(const Surface& skin, const BoundaryOptions& o, const Notes& notes) {
+    const SizeAt by_shape = shape_size(skin, o.edge_m);
+    std::vector<FineSpot> spots = o.fine;
+    Boundary best;
+    for (int tries = 1; tries <= kTries; ++tries) {
+        const SizeAt size = with_spots(by_shape, spots);
+        Boundary now{.surface = remesh(skin, size, {}), .tries = tries, .problem = {}};
+        const Surface on_skin = now.surface; // its points lie on the skin
+        fit_to_skin(skin, kFitRounds, 180.0, now.surface);
+        hold_volume(now.surface, o.volume_m3);
+        auto crossings = find_crossings(now.surface, 1000);
+        if (!crossings.empty()) { // fitting may push sheets through each other
+            Surface unfitted = on_skin;
+            hold_volume(unfitted, o.volume_m3);
+            const auto fewer = find_crossings(unfitted, 1000);
+            if (fewer.size() < crossings.size()) {
+                now.surface = std::move(unfitted);
+                crossings = fewer;
+            }
+        }
+        std::vector<glm::dvec3> places;
+        for (const auto& c : crossings) {
+            places.push_back(c.at_m);
+        }
+        now.problem = describe(crossings, o.edge_m, notes);
+        now.distance_m = hausdorff(skin, now.surface).distance_m;
+        if (now.distance_m > o.farthest_m) {
+            find_far(skin, now.surface, o.farthest_m, places);
+            find_far(now.surface, skin, o.farthest_m, places);
+            now.problem += now.problem.empty()
+                               ? fmt::format("{} from the surface given", notes.length(now.distance_m))
+                               : "";
+        }
+        if (best.tries == 0 || now.problem.size() < best.problem.size()) {
+            best = now;
+        }
+        if (now.problem.empty() || places.empty() || spots.size() > kMostSpots) {
+            break;
+        }
+        for (const auto& p : places) {
+            const bool covered =
+                std::any_of(spots.begin(), spots.end(), [&](const FineSpot& s) {
+                    return glm::length(p / kMm - s.centre_mm) < 0.5 * s.radius_mm &&
+                           s.edge_mm < 0.8 * size(p) / kMm;
+                });
+            if (!covered) {
+                spots.push_back(finer_here(p, size));
+            }
+        }
+    }
+    return best;
+}
+
+} // namespace bake

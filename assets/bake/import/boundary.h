@@ -1,0 +1,33 @@
+// assets/bake/import/boundary.h
+// The boundary of the tetrahedra for a given skin: coarse triangles that keep to the skin, hold its
+// volume and never cross each other. Called by organ_body.
+#pragma once
+
+#include "assets/bake/import/notes.h"
+#include "assets/bake/recipe.h"
+#include "assets/bake/surface.h"
+
+namespace bake {
+
+struct BoundaryOptions {
+    double edge_m = 0.0;
+    double volume_m3 = 0.0;     // to hold
+    double farthest_m = 0.0;    // from the skin, both ways
+    std::vector<FineSpot> fine; // asked for
+};
+
+struct Boundary {
+    Surface surface;
+    double distance_m = 0.0; // from the skin
+    int tries = 0;
+    std::string problem; // empty: good
+};
+
+/// Where triangles cross or are too far from the skin, edges are made shorter and it is tried
+/// again, up to eight times; the best try is returned.
+Boundary make_boundary(const Surface& skin, const BoundaryOptions& options, const Notes& notes);
+
+/// `base`, but shorter at the spots.
+SizeAt with_spots(SizeAt base, std::vector<FineSpot> spots);
+
+} // namespace bake

@@ -1,0 +1,23 @@
+// assets/bake/import/size_field.h
+// How long the edges of an organ's surfaces should be, from its own shape. Called by import.
+#pragma once
+
+#include "assets/bake/surface.h"
+
+namespace bake {
+
+/// The edge at which a body of this volume and area gets about `nodes` nodes: those of even
+/// triangles on its area, sqrt(3)/2 h^2 each, and of even tetrahedra in what lies deeper than half
+/// an edge, h^3 / sqrt(2) each.
+double edge_for_nodes(double volume_m3, double area_m2, double nodes);
+
+/// Diameter of the largest ball that touches the surface at each point from inside (shrinking
+/// balls, Ma, Bae & Choi 2012), or from outside where that is smaller; at most `most_m`. Where the
+/// ball is held by the surface's own curvature alone there is no thickness: `most_m`.
+std::vector<double> thickness_m(const Surface& surface, double most_m);
+
+/// Wanted edge: `edge_m`, shorter where the surface is curved (down to half) or where the body, or
+/// the gap between two parts of it, is thin (down to a quarter).
+SizeAt shape_size(const Surface& surface, double edge_m);
+
+} // namespace bake
