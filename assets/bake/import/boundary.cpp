@@ -4,7 +4,6 @@
 #include "assets/bake/import/crossing.h"
 #include "assets/bake/import/distance.h"
 #include "assets/bake/import/size_field.h"
-#include "assets/bake/nearest.h"
 #include "assets/bake/remesh.h"
 
 #include <algorithm>
@@ -14,7 +13,6 @@ namespace {
 
 constexpr int kTries = 8;
 constexpr int kFitRounds = 20;
-constexpr double kFiner = 0.65;    // of the edge at a place that went wrong
 constexpr double kMm = 1e-3;
 constexpr std::size_t kMostSpots = 200;
 
@@ -27,31 +25,6 @@ void hold_volume(Surface& s, double wanted_m3) {
             s.point_m[v] += offset_m * normal[v];
         }
     }
-}
-
-/// Places on `from` that are too far from `to`, a spot's width apart.
-void find_far(const Surface& from, const Surface& to, double farthest_m,
-              std::vector<glm::dvec3>& places) {
-    const NearestOnSurface nearest(to);
-    for (const auto& t : from.triangles) {
-        const glm::dvec3 middle =
-            (from.point_m[t[0]] + from.point_m[t[1]] + from.point_m[t[2]]) / 3.0;
-        for (const auto& p : {from.point_m[t[0]], middle}) {
-            const bool far = nearest(p).distance_m > farthest_m;
-            const bool near_another =
-                std::any_of(places.begin(), places.end(), [&](const glm::dvec3& q) {
-                    return glm::length(p - q) < 2.0 * farthest_m;
-                });
-            if (far && !near_another) {
-                places.push_back(p);
-            }
-        }
-    }
-}
-
-FineSpot finer_here(const glm::dvec3& p_m, const SizeAt& size) {
-    const double now_mm = size(p_m) / kMm;
-    return {.centre_mm = p_m / kMm, .radius_mm = now_mm, .edge_mm = kFiner * now_mm};
 }
 
 } // namespace
@@ -69,6 +42,24 @@ SizeAt with_spots(SizeAt base, std::vector<FineSpot> spots) {
         }
         return size_m;
     };
+}
+
+void add_spots(const std::vector<glm::dvec3>& places, const SizeAt& size,
+               std::vector<FineSpot>& spots) {
+    constexpr double kFiner = 0.65; // of the edge there
+    const std::size_t before = spots.size();
+    for (const auto& p : places) {
+        const double now_mm = size(p) / kMm;
+        const bool near_another =
+            std::any_of(spots.begin() + static_cast<std::ptrdiff_t>(before), spots.end(),
+                        [&](const FineSpot& s) {
+                            return glm::length(p / kMm - s.centre_mm) < 0.5 * s.radius_mm;
+                        });
+        if (!near_another) {
+            spots.push_back(
+                {.centre_mm = p / kMm, .radius_mm = now_mm, .edge_mm = kFiner * now_mm});
+        }
+    }
 }
 
 Boundary make_boundary(const Surface& skin, const BoundaryOptions& o, const Notes& notes) {
@@ -98,11 +89,11 @@ Boundary make_boundary(const Surface& skin, const BoundaryOptions& o, const Note
         now.problem = describe(crossings, o.edge_m, notes);
         now.distance_m = hausdorff(skin, now.surface).distance_m;
         if (now.distance_m > o.farthest_m) {
-            find_far(skin, now.surface, o.farthest_m, places);
-            find_far(now.surface, skin, o.farthest_m, places);
-            now.problem += now.problem.empty()
-                               ? fmt::format("{} from the surface given", notes.length(now.distance_m))
-                               : "";
+            add_far_places(skin, now.surface, o.farthest_m, places);
+            add_far_places(now.surface, skin, o.farthest_m, places);
+            now.problem += now.problem.empty() ? fmt::format("{} from the surface given",
+                                                             notes.length(now.distance_m))
+                                               : "";
         }
         if (best.tries == 0 || now.problem.size() < best.problem.size()) {
             best = now;
@@ -110,16 +101,7 @@ Boundary make_boundary(const Surface& skin, const BoundaryOptions& o, const Note
         if (now.problem.empty() || places.empty() || spots.size() > kMostSpots) {
             break;
         }
-        for (const auto& p : places) {
-            const bool covered =
-                std::any_of(spots.begin(), spots.end(), [&](const FineSpot& s) {
-                    return glm::length(p / kMm - s.centre_mm) < 0.5 * s.radius_mm &&
-                           s.edge_mm < 0.8 * size(p) / kMm;
-                });
-            if (!covered) {
-                spots.push_back(finer_here(p, size));
-            }
-        }
+        add_spots(places, size, spots);
     }
     return best;
 }

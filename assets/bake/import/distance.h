@@ -18,4 +18,8 @@ Far farthest(const Surface& from, const Surface& to);
 /// Both ways.
 Far hausdorff(const Surface& a, const Surface& b);
 
+/// Appends places on `from` that are farther than `limit_m` from `to`, twice that apart.
+void add_far_places(const Surface& from, const Surface& to, double limit_m,
+                    std::vector<glm::dvec3>& places);
+
 } // namespace bake

@@ -11,7 +11,8 @@
 namespace bake {
 namespace {
 
-constexpr double kNodes = 1000.0; // of all bodies together, where --edge says nothing
+constexpr double kNodes =
+    800.0; // before grading, of all bodies together, where --edge says nothing
 constexpr double kFineShare = 0.5; // of the edge, at places that are asked for
 constexpr double kMm = 1e-3;
 
@@ -36,8 +37,8 @@ std::uint64_t input_hash(std::span<const std::byte> bytes, const ImportOptions& 
                                 o.material.poisson,
                                 o.material.density_kgpm3};
     for (const auto& f : o.fine) {
-        numbers.insert(numbers.end(), {f.centre_mm.x, f.centre_mm.y, f.centre_mm.z, f.radius_mm,
-                                       f.edge_mm});
+        numbers.insert(numbers.end(),
+                       {f.centre_mm.x, f.centre_mm.y, f.centre_mm.z, f.radius_mm, f.edge_mm});
     }
     take(numbers.data(), numbers.size() * sizeof(double));
     return hash;

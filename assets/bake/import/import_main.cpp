@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 enum ExitCode { kDone = 0, kBadInput = 2 };
-constexpr double kLongest_s = 1800.0;             // of a whole import
+constexpr double kLongest_s = 1800.0;                  // of a whole import
 constexpr std::uintmax_t kLargestFile = 3'000'000'000; // bytes
 
 volatile std::sig_atomic_t signal_came = 0;
@@ -46,7 +46,7 @@ std::vector<std::byte> read_bytes(const fs::path& file) {
     const auto status = fs::status(file, error);
     if (error || !fs::is_regular_file(status)) {
         throw PathError(fmt::format("{}: {}: accepted: a file", shown_path(file),
-                                    !fs::exists(status)          ? "is not there"
+                                    !fs::exists(status)        ? "is not there"
                                     : fs::is_directory(status) ? "is a folder"
                                                                : "is not a plain file"));
     }
@@ -57,7 +57,8 @@ std::vector<std::byte> read_bytes(const fs::path& file) {
     }
     std::ifstream in(file, std::ios::binary);
     std::vector<std::byte> bytes(size);
-    if (!in || !in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size))) {
+    if (!in ||
+        !in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size))) {
         throw PathError(
             fmt::format("{}: cannot be read: {}", shown_path(file), std::strerror(errno)));
     }
@@ -108,9 +109,10 @@ ImportOptions make_options(const Arguments& a) {
 }
 
 /// In the child: reads, computes, writes into the staged folder; returns what to print.
-std::vector<std::byte> work(const Arguments& a, const ImportOptions& options, const fs::path& folder) {
-    const auto memory = static_cast<rlim_t>(sysconf(_SC_PHYS_PAGES)) *
-                        static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
+std::vector<std::byte> work(const Arguments& a, const ImportOptions& options,
+                            const fs::path& folder) {
+    const auto memory =
+        static_cast<rlim_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
     const rlimit most{memory / 10 * 9, memory / 10 * 9};
     setrlimit(RLIMIT_AS, &most); // too much is an exception here, and the machine lives on
     const fs::path file(a.surface);
@@ -128,9 +130,9 @@ std::vector<std::byte> work(const Arguments& a, const ImportOptions& options, co
         if (!a.picture.empty()) {
             write_whole(folder / "picture.png", picture_png(imported));
         }
-        text = a.json ? import_json(imported, options, true)
-                      : import_text(imported, options) +
-                            fmt::format("{:.1f} s\n", imported.seconds);
+        text = a.json
+                   ? import_json(imported, options, true)
+                   : import_text(imported, options) + fmt::format("{:.1f} s\n", imported.seconds);
     } catch (const PathError&) {
         throw;
     } catch (const std::bad_alloc&) {
@@ -197,10 +199,12 @@ void declare(CLI::App& app, Arguments& a) {
         ->check(CLI::IsMember({"mm", "cm", "m"}));
     app.add_option("--material", a.material, "Tissue, by its name in organs/materials.toml");
     app.add_flag("--rigid", a.rigid, "Scenery: no tetrahedra, no material");
-    app.add_option("--edge", a.edge_mm,
-                   "Edge of the tetrahedra, mm; default: from volume and area, for 1000 nodes")
+    app.add_option(
+           "--edge", a.edge_mm,
+           "Edge of the tetrahedra, mm; default: from volume and area, for about 1000 nodes")
         ->check(CLI::Range(0.5, 100.0));
-    app.add_option("--fine", a.fine, "x,y,z,r in mm: finer within r of a place; may be repeated");
+    app.add_option("--fine", a.fine, "x,y,z,r in mm: finer within r of a place; may be repeated")
+        ->allow_extra_args(false);
     app.add_flag("--largest", a.largest, "Only the largest body of several");
     app.add_option("--picture", a.picture, "Draw surface, tetrahedra and anchors")
         ->type_name("FILE.png");

@@ -14,6 +14,9 @@ namespace {
 constexpr double kSkinPerEdge = 1.0 / 3.0; // skin edge, of the tetrahedra's
 constexpr double kDense = 0.5;             // mean edge of a scan over the skin's: coarsened first
 constexpr double kSkinRadiiPerEdge = 0.9, kSkinShare = 0.5;
+constexpr double kSkinAway = 0.3; // from the surface given, of the skin's edge
+constexpr int kSkinTries = 4;
+constexpr std::size_t kMostSpots = 300;
 constexpr double kMostAway = 0.5; // Hausdorff distance, of the edge
 constexpr int kImproveSweeps = 6;
 
@@ -36,12 +39,24 @@ double mean_edge_m(const Surface& s) {
     return std::sqrt(each_m2 * 4.0 / std::sqrt(3.0)); // of equilateral triangles
 }
 
+/// Finer again where it keeps away from the surface given: tips and edges wear off in remeshing.
 Surface make_skin(const Surface& given, double skin_m) {
     const Surface shape =
         mean_edge_m(given) < kDense * skin_m ? coarsen(given, kDense * skin_m) : given;
     const Surface even =
         remesh(shape, [skin_m](const glm::dvec3&) { return skin_m; }, {.rounds = 5});
-    return remesh(shape, curvature_size(even, skin_m, kSkinRadiiPerEdge, kSkinShare), {});
+    const SizeAt by_shape = curvature_size(even, skin_m, kSkinRadiiPerEdge, kSkinShare);
+    std::vector<FineSpot> spots;
+    for (int tries = 0;; ++tries) {
+        const SizeAt size = with_spots(by_shape, spots);
+        Surface skin = remesh(shape, size, {});
+        std::vector<glm::dvec3> places;
+        add_far_places(given, skin, kSkinAway * skin_m, places);
+        if (places.empty() || tries == kSkinTries || places.size() > kMostSpots) {
+            return skin;
+        }
+        add_spots(places, size, spots);
+    }
 }
 
 void require_good(const Surface& s, std::size_t shells, const char* what) {
@@ -101,7 +116,8 @@ Solid make_solid(const Surface& skin, const Body& body, const BodyPlan& plan,
         }
         clock.begin("tetrahedra");
         auto solid = solid_of(boundary.surface, body, plan.edge_m, options, clock, made.attempts);
-        if (solid && (!best || solid->quality.worst_dihedral_deg > best->quality.worst_dihedral_deg)) {
+        if (solid &&
+            (!best || solid->quality.worst_dihedral_deg > best->quality.worst_dihedral_deg)) {
             best = std::move(solid);
         }
         if (best && best->quality.worst_dihedral_deg >= kLeastDihedralDeg) {
@@ -168,9 +184,8 @@ ImportedBody make_organ(const Body& body, const Surface& seen, const BodyPlan& p
     clock.end();
     const double away_m = std::max(made.skin_distance_m, made.boundary_distance_m);
     if (away_m > kMostAway * plan.edge_m) {
-        const Far far = hausdorff(seen, made.boundary_distance_m > made.skin_distance_m
-                                            ? made.boundary
-                                            : skin);
+        const Far far =
+            hausdorff(seen, made.boundary_distance_m > made.skin_distance_m ? made.boundary : skin);
         throw ImportRefused(fmt::format("{}: the result is {} from the surface given at {}: "
                                         "accepted: half an edge, {} (--edge for finer)",
                                         plan.name, notes.length(away_m), notes.place(far.at_m),
