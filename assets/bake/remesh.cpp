@@ -37,6 +37,18 @@ void mark_creases(Mesh& mesh, double crease_deg) {
     }
 }
 
+void mark_tips(Mesh& mesh, double tip_deg) {
+    std::vector<double> sum(mesh.n_vertices(), 0.0);
+    for (const auto h : mesh.halfedges()) {
+        if (!mesh.is_boundary(h)) {
+            sum[mesh.to_vertex_handle(h).idx()] += mesh.calc_sector_angle(h);
+        }
+    }
+    for (const auto v : mesh.vertices()) {
+        mesh.status(v).set_locked(sum[v.idx()] < tip_deg * std::numbers::pi / 180.0);
+    }
+}
+
 double edge_over_size(const Mesh& mesh, Edge e, const SizeAt& size) {
     const HalfEdge h = mesh.halfedge_handle(e, 0);
     const glm::dvec3 a = to_glm(mesh.point(mesh.from_vertex_handle(h)));
@@ -91,6 +103,9 @@ bool turns_over(const Mesh& mesh, HalfEdge collapse) {
 bool may_collapse(Mesh& mesh, HalfEdge h, const SizeAt& size) {
     const Vertex from = mesh.from_vertex_handle(h), to = mesh.to_vertex_handle(h);
     const int creases = creases_at(mesh, from);
+    if (mesh.status(from).locked()) {
+        return false;
+    }
     if (creases != 0 && (creases != 2 || !mesh.status(mesh.edge_handle(h)).feature())) {
         return false;
     }
@@ -188,6 +203,9 @@ void relax(Mesh& mesh, const NearestOnSurface& shape) {
             }
         }
         next[v.idx()] = p;
+        if (mesh.status(v).locked()) {
+            continue;
+        }
         if (creases == 0) {
             const glm::dvec3 n = to_glm(mesh.normal(v)), move = sum / weight - p;
             next[v.idx()] = shape(p + (move - n * glm::dot(n, move))).point_m;
@@ -208,6 +226,7 @@ Surface remesh(const Surface& shape, const SizeAt& size, const RemeshOptions& op
     mesh.request_face_normals();
     mesh.request_vertex_normals();
     mark_creases(mesh, options.crease_deg);
+    mark_tips(mesh, options.tip_deg);
     for (int round = 0; round < options.rounds; ++round) {
         split_long(mesh, size);
         collapse_short(mesh, size);

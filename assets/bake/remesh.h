@@ -11,6 +11,7 @@ namespace bake {
 struct RemeshOptions {
     int rounds = 12;
     double crease_deg = 180.0; // edges that bend by more are creases; 180: none
+    double tip_deg = 0.0;      // points whose angles sum up to less are tips, and stay; 0: none
 };
 
 /// `shape` must be closed and manifold (check_surface); the result is too.

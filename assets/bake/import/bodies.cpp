@@ -74,9 +74,11 @@ std::vector<Shell> make_shells(std::vector<Surface> closed, Notes& notes) {
         shells.push_back(std::move(shell));
     }
     if (turned > 0) {
-        notes.repairs.push_back(fmt::format("{} of {} shells faced inwards", turned, shells.size()));
+        notes.repairs.push_back(
+            fmt::format("{} of {} shells faced inwards", turned, shells.size()));
     }
-    const glm::dvec3 size = shells.empty() ? glm::dvec3{0.0} : shells[0].box.high - shells[0].box.low;
+    const glm::dvec3 size =
+        shells.empty() ? glm::dvec3{0.0} : shells[0].box.high - shells[0].box.low;
     const double diagonal_m = glm::length(size);
     if (largest <= 1e-9 * diagonal_m * diagonal_m * diagonal_m) {
         throw ImportRefused(fmt::format("it has no volume, around {}: accepted: a closed surface "
@@ -95,9 +97,8 @@ std::vector<Shell> make_shells(std::vector<Surface> closed, Notes& notes) {
             "{} specks (each below {:.1f} % of the largest body's volume) dropped, the first at {}",
             specks, 100.0 * kSpeckShare, notes.place(speck_at)));
     }
-    std::stable_sort(shells.begin(), shells.end(), [](const Shell& a, const Shell& b) {
-        return a.volume_m3 > b.volume_m3;
-    });
+    std::stable_sort(shells.begin(), shells.end(),
+                     [](const Shell& a, const Shell& b) { return a.volume_m3 > b.volume_m3; });
     return shells;
 }
 
@@ -124,9 +125,9 @@ std::vector<Body> make_bodies(std::vector<Surface> closed, Notes& notes) {
             if (inner.depth == shells[i].depth + 1 && inner.inside == i) {
                 body.cavity_m.push_back(place_inside(inner.surface));
                 body.volume_m3 -= inner.volume_m3;
-                notes.repairs.push_back(fmt::format(
-                    "a shell of {:.3g} ml inside another, at {}, is taken as a cavity",
-                    1e6 * inner.volume_m3, notes.place(body.cavity_m.back())));
+                notes.repairs.push_back(
+                    fmt::format("a shell of {:.3g} ml inside another, at {}, is taken as a cavity",
+                                1e6 * inner.volume_m3, notes.place(body.cavity_m.back())));
                 turn_over(inner.surface);
                 body.surface = joined({&body.surface, &inner.surface});
             }

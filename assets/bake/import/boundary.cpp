@@ -3,8 +3,6 @@
 #include "assets/bake/fit.h"
 #include "assets/bake/import/crossing.h"
 #include "assets/bake/import/distance.h"
-#include "assets/bake/import/size_field.h"
-#include "assets/bake/remesh.h"
 
 #include <algorithm>
 
@@ -14,7 +12,8 @@ namespace {
 constexpr int kTries = 8;
 constexpr int kFitRounds = 20;
 constexpr double kMm = 1e-3;
-constexpr std::size_t kMostSpots = 200;
+constexpr std::size_t kMostSpots = 400;
+constexpr std::size_t kMostCrossings = 1000;
 
 /// Moves all points along their normals until the volume is right; first order, twice.
 void hold_volume(Surface& s, double wanted_m3) {
@@ -62,43 +61,58 @@ void add_spots(const std::vector<glm::dvec3>& places, const SizeAt& size,
     }
 }
 
-Boundary make_boundary(const Surface& skin, const BoundaryOptions& o, const Notes& notes) {
-    const SizeAt by_shape = shape_size(skin, o.edge_m);
+namespace {
+
+/// One try, with the places where it went wrong.
+Boundary try_boundary(const Surface& skin, const SizeAt& size, const BoundaryOptions& o,
+                      const Notes& notes, std::vector<glm::dvec3>& places) {
+    Boundary now{.surface = remesh(skin, size, o.keep), .problem = {}};
+    Surface unfitted = now.surface; // its points lie on the skin
+    fit_to_skin(skin, kFitRounds, o.keep.crease_deg, now.surface);
+    hold_volume(now.surface, o.volume_m3);
+    auto crossings = find_crossings(now.surface, kMostCrossings);
+    if (!crossings.empty()) { // fitting may push sheets through each other
+        hold_volume(unfitted, o.volume_m3);
+        const auto fewer = find_crossings(unfitted, kMostCrossings);
+        if (fewer.size() < crossings.size()) {
+            now.surface = std::move(unfitted);
+            crossings = fewer;
+        }
+    }
+    for (const auto& c : crossings) {
+        places.push_back(c.at_m);
+    }
+    now.crossings = crossings.size();
+    now.problem = describe(crossings, o.edge_m, notes);
+    now.distance_m = hausdorff(skin, now.surface).distance_m;
+    if (now.distance_m > o.farthest_m) {
+        add_far_places(skin, now.surface, o.farthest_m, places);
+        add_far_places(now.surface, skin, o.farthest_m, places);
+        now.problem += now.problem.empty()
+                           ? fmt::format("{} from the surface given", notes.length(now.distance_m))
+                           : "";
+    }
+    return now;
+}
+
+} // namespace
+
+Boundary make_boundary(const Surface& skin, const SizeAt& by_shape, const BoundaryOptions& o,
+                       const Notes& notes) {
     std::vector<FineSpot> spots = o.fine;
     Boundary best;
     for (int tries = 1; tries <= kTries; ++tries) {
         const SizeAt size = with_spots(by_shape, spots);
-        Boundary now{.surface = remesh(skin, size, {}), .tries = tries, .problem = {}};
-        const Surface on_skin = now.surface; // its points lie on the skin
-        fit_to_skin(skin, kFitRounds, 180.0, now.surface);
-        hold_volume(now.surface, o.volume_m3);
-        auto crossings = find_crossings(now.surface, 1000);
-        if (!crossings.empty()) { // fitting may push sheets through each other
-            Surface unfitted = on_skin;
-            hold_volume(unfitted, o.volume_m3);
-            const auto fewer = find_crossings(unfitted, 1000);
-            if (fewer.size() < crossings.size()) {
-                now.surface = std::move(unfitted);
-                crossings = fewer;
-            }
-        }
         std::vector<glm::dvec3> places;
-        for (const auto& c : crossings) {
-            places.push_back(c.at_m);
+        Boundary now = try_boundary(skin, size, o, notes, places);
+        const bool better = now.crossings != best.crossings ? now.crossings < best.crossings
+                                                            : now.distance_m < best.distance_m;
+        const bool good = now.problem.empty();
+        if (best.tries == 0 || better || good) {
+            best = std::move(now);
         }
-        now.problem = describe(crossings, o.edge_m, notes);
-        now.distance_m = hausdorff(skin, now.surface).distance_m;
-        if (now.distance_m > o.farthest_m) {
-            add_far_places(skin, now.surface, o.farthest_m, places);
-            add_far_places(now.surface, skin, o.farthest_m, places);
-            now.problem += now.problem.empty() ? fmt::format("{} from the surface given",
-                                                             notes.length(now.distance_m))
-                                               : "";
-        }
-        if (best.tries == 0 || now.problem.size() < best.problem.size()) {
-            best = now;
-        }
-        if (now.problem.empty() || places.empty() || spots.size() > kMostSpots) {
+        best.tries = tries;
+        if (good || places.empty() || spots.size() > kMostSpots) {
             break;
         }
         add_spots(places, size, spots);

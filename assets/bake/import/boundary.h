@@ -5,27 +5,30 @@
 
 #include "assets/bake/import/notes.h"
 #include "assets/bake/recipe.h"
-#include "assets/bake/surface.h"
+#include "assets/bake/remesh.h"
 
 namespace bake {
 
 struct BoundaryOptions {
     double edge_m = 0.0;
-    double volume_m3 = 0.0;     // to hold
-    double farthest_m = 0.0;    // from the skin, both ways
+    double volume_m3 = 0.0;  // to hold
+    double farthest_m = 0.0; // from the skin, both ways
+    RemeshOptions keep;
     std::vector<FineSpot> fine; // asked for
 };
 
 struct Boundary {
     Surface surface;
-    double distance_m = 0.0; // from the skin
+    double distance_m = 0.0;   // from the skin, both ways
+    std::size_t crossings = 0; // pairs of triangles
     int tries = 0;
     std::string problem; // empty: good
 };
 
 /// Where triangles cross or are too far from the skin, edges are made shorter and it is tried
-/// again, up to eight times; the best try is returned.
-Boundary make_boundary(const Surface& skin, const BoundaryOptions& options, const Notes& notes);
+/// again, up to eight times; the best try is returned. `by_shape`: wanted edges to begin with.
+Boundary make_boundary(const Surface& skin, const SizeAt& by_shape, const BoundaryOptions& options,
+                       const Notes& notes);
 
 /// `base`, but shorter at the spots.
 SizeAt with_spots(SizeAt base, std::vector<FineSpot> spots);

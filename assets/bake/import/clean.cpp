@@ -21,7 +21,8 @@ void require_plausible_size(const Surface& s, const Notes& notes) {
         return;
     }
     std::string fits;
-    for (const auto& [name, m] : {std::pair{"mm", 1e-3}, std::pair{"cm", 1e-2}, std::pair{"m", 1.0}}) {
+    for (const auto& [name, m] :
+         {std::pair{"mm", 1e-3}, std::pair{"cm", 1e-2}, std::pair{"m", 1.0}}) {
         const double would_m = longest_m / notes.unit.m * m;
         if (would_m >= kSmallest_m && would_m <= kLargest_m) {
             fits += fmt::format("{}--unit {} ({:.3g} mm long)", fits.empty() ? "" : " or ", name,
@@ -68,8 +69,7 @@ void judge_open(const Surface& s, const Topology& topology, const std::vector<st
     for (std::size_t t = 0; t < s.triangles.size(); ++t) {
         const auto& c = s.triangles[t];
         const glm::dvec3 a = s.point_m[c[0]];
-        const double m2 =
-            0.5 * glm::length(glm::cross(s.point_m[c[1]] - a, s.point_m[c[2]] - a));
+        const double m2 = 0.5 * glm::length(glm::cross(s.point_m[c[1]] - a, s.point_m[c[2]] - a));
         area[piece[t]] += m2;
         whole_m2 += m2;
         for (std::size_t h = 3 * t; h < 3 * t + 3; ++h) {
@@ -95,8 +95,9 @@ void judge_open(const Surface& s, const Topology& topology, const std::vector<st
         for (std::size_t t = 0; t < s.triangles.size(); ++t) {
             at = drop[piece[t]] && triangles++ == 0 ? s.point_m[s.triangles[t][0]] : at;
         }
-        notes.repairs.push_back(fmt::format("{} open scraps ({} triangles) dropped, the first at {}",
-                                            dropped, triangles, notes.place(at)));
+        notes.repairs.push_back(
+            fmt::format("{} open scraps ({} triangles) dropped, the first at {}", dropped,
+                        triangles, notes.place(at)));
     }
     for (const Hole& hole : find_holes(s, topology)) {
         const std::size_t p = piece[hole.triangle];
@@ -132,12 +133,12 @@ Pieces clean(const Soup& soup, Notes& notes) {
     };
     refuse_one_sided();
     if (topology.turned > 0) {
-        notes.repairs.push_back(
-            fmt::format("{} triangles turned over to agree with their neighbours", topology.turned));
+        notes.repairs.push_back(fmt::format(
+            "{} triangles turned over to agree with their neighbours", topology.turned));
     }
     if (topology.shared_edges > 0) {
-        notes.repairs.push_back(fmt::format("{} edges of more than two triangles taken apart",
-                                            topology.shared_edges));
+        notes.repairs.push_back(
+            fmt::format("{} edges of more than two triangles taken apart", topology.shared_edges));
     }
     if (topology.open_edges > 0 && fill_holes(s, topology, notes)) {
         topology = make_manifold(s);

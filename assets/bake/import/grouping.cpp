@@ -16,7 +16,7 @@
 namespace bake {
 namespace {
 
-constexpr double kCellPerEdge = 1.0 / 6.0;   // of sampling
+constexpr double kCellPerEdge = 1.0 / 6.0; // of sampling
 constexpr std::size_t kMostCrossings = 20'000;
 constexpr std::size_t kMostChecked = 1'000'000; // triangles; larger bodies are coarsened first
 constexpr double kOverlapShare = 1e-3;          // of the smaller diagonal; below it they touch
@@ -31,7 +31,8 @@ double depth_m(const Surface& a, std::uint32_t t, const Surface& b, const Neares
     const auto& c = a.triangles[t];
     const glm::dvec3 p = a.point_m[c[0]], q = a.point_m[c[1]], r = a.point_m[c[2]];
     double deepest_m = 0.0;
-    for (const auto& x : {p, q, r, 0.5 * (p + q), 0.5 * (q + r), 0.5 * (r + p), (p + q + r) / 3.0}) {
+    for (const auto& x :
+         {p, q, r, 0.5 * (p + q), 0.5 * (q + r), 0.5 * (r + p), (p + q + r) / 3.0}) {
         const double m = near(x).distance_m;
         if (m > deepest_m && winding_number(b, x) > 0.5) {
             deepest_m = m;
@@ -41,7 +42,7 @@ double depth_m(const Surface& a, std::uint32_t t, const Surface& b, const Neares
 }
 
 struct Contacts {
-    std::vector<std::vector<Crossing>> own;                       // of each body with itself
+    std::vector<std::vector<Crossing>> own; // of each body with itself
     std::map<std::pair<std::size_t, std::size_t>, std::vector<Crossing>> mutual; // local triangles
 };
 
@@ -74,8 +75,7 @@ Contacts find_contacts(const std::vector<Body>& bodies) {
 }
 
 bool overlap(const Body& a, const Body& b, const std::vector<Crossing>& where) {
-    const double limit_m =
-        kOverlapShare * std::min(diagonal_m(a.surface), diagonal_m(b.surface));
+    const double limit_m = kOverlapShare * std::min(diagonal_m(a.surface), diagonal_m(b.surface));
     const NearestOnSurface near_a(a.surface), near_b(b.surface);
     const std::size_t step = where.size() / 300 + 1;
     for (std::size_t i = 0; i < where.size(); i += step) {
@@ -120,7 +120,8 @@ void share_out(const Surface& seen, std::vector<GivenBody>& bodies) {
         nearest.emplace_back(b.body.surface);
     }
     for (const auto& t : seen.triangles) {
-        const glm::dvec3 middle = (seen.point_m[t[0]] + seen.point_m[t[1]] + seen.point_m[t[2]]) / 3.0;
+        const glm::dvec3 middle =
+            (seen.point_m[t[0]] + seen.point_m[t[1]] + seen.point_m[t[2]]) / 3.0;
         std::size_t best = 0;
         double least_m = std::numeric_limits<double>::max();
         for (std::size_t i = 0; i < bodies.size(); ++i) {

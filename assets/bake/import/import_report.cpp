@@ -117,9 +117,9 @@ std::string import_json(const Imported& imported, const ImportOptions& options, 
 }
 
 std::string import_text(const Imported& imported, const ImportOptions& options) {
-    std::string text = fmt::format("{} triangles ({}), {} {}\n", imported.triangles, imported.format,
-                                   imported.bodies.size(),
-                                   imported.bodies.size() == 1 ? "body" : "bodies");
+    std::string text =
+        fmt::format("{} triangles ({}), {} {}\n", imported.triangles, imported.format,
+                    imported.bodies.size(), imported.bodies.size() == 1 ? "body" : "bodies");
     for (const auto& line : imported.notes.repairs) {
         text += fmt::format("repaired: {}\n", line);
     }

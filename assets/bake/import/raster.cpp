@@ -30,9 +30,12 @@ std::uint16_t glyph(char c) {
     if (c >= 'A' && c <= 'Z') {
         return kLetters[c - 'A'];
     }
-    return c == '.' ? 0x0002 : c == '-' || c == '_' ? 0x01C0 : c == '/' ? 0x12A4 : c == '%' ? 0x52A5
-           : c == '+'                                                    ? 0x05D0
-                                                                         : 0;
+    return c == '.'               ? 0x0002
+           : c == '-' || c == '_' ? 0x01C0
+           : c == '/'             ? 0x12A4
+           : c == '%'             ? 0x52A5
+           : c == '+'             ? 0x05D0
+                                  : 0;
 }
 
 void append(png_structp png, png_bytep data, png_size_t size) {
@@ -153,7 +156,8 @@ std::string Raster::png() const {
                  PNG_FILTER_TYPE_DEFAULT);
     png_write_info(png, info);
     for (int y = 0; y < h; ++y) {
-        png_write_row(png, rgb.data() + static_cast<std::size_t>(3 * w) * static_cast<std::size_t>(y));
+        png_write_row(png,
+                      rgb.data() + static_cast<std::size_t>(3 * w) * static_cast<std::size_t>(y));
     }
     png_write_end(png, nullptr);
     png_destroy_write_struct(&png, &info);

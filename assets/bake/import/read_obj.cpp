@@ -53,9 +53,9 @@ Soup read_obj(std::span<const std::byte> bytes) {
             add_polygon(corners, soup);
         } else {
             // binary bytes have no words that OBJ knows
-            static constexpr std::string_view kKnown[] = {
-                "vt",  "vn",     "vp",  "g", "o",  "s",   "usemtl", "mtllib",
-                "l",   "p",      "mg",  "usemap", "maplib", "lod", "bevel"};
+            static constexpr std::string_view kKnown[] = {"vt", "vn",     "vp",     "g",   "o",
+                                                          "s",  "usemtl", "mtllib", "l",   "p",
+                                                          "mg", "usemap", "maplib", "lod", "bevel"};
             const bool known =
                 std::find(std::begin(kKnown), std::end(kKnown), words[0]) != std::end(kKnown);
             if (!known) {

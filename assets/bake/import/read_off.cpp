@@ -12,7 +12,7 @@ constexpr std::size_t kLeastPointBytes = 6, kLeastFaceBytes = 6; // "0 0 0\n"
 
 /// Points have more numbers after x, y, z in some kinds, which are skipped with the line.
 bool known_kind(std::string_view word) {
-    static constexpr std::string_view kKinds[] = {"OFF",   "COFF",  "NOFF",   "CNOFF",
+    static constexpr std::string_view kKinds[] = {"OFF",   "COFF",   "NOFF",   "CNOFF",
                                                   "STOFF", "STCOFF", "STNOFF", "STCNOFF"};
     return std::find(std::begin(kKinds), std::end(kKinds), word) != std::end(kKinds);
 }
@@ -40,8 +40,8 @@ Soup read_off(std::span<const std::byte> bytes) {
     const auto left = static_cast<std::int64_t>(scan.left());
     const std::int64_t points = scan.integer(words[0], "the number of points", 0,
                                              left / std::int64_t{kLeastPointBytes} + 1);
-    const std::int64_t faces = scan.integer(words[1], "the number of faces", 0,
-                                            left / std::int64_t{kLeastFaceBytes} + 1);
+    const std::int64_t faces =
+        scan.integer(words[1], "the number of faces", 0, left / std::int64_t{kLeastFaceBytes} + 1);
     for (std::int64_t i = 0; i < points; ++i) {
         if (!scan.line_words(words) || words.size() < 3) {
             scan.refuse(fmt::format("point {} of {}", i + 1, points), words.empty() ? "" : words[0],
@@ -62,8 +62,8 @@ Soup read_off(std::span<const std::byte> bytes) {
                                                 static_cast<std::int64_t>(words.size()) - 1);
         corners.clear();
         for (std::int64_t k = 0; k < count; ++k) {
-            corners.push_back(static_cast<std::uint32_t>(scan.integer(
-                words[static_cast<std::size_t>(k) + 1], "a corner", 0, points - 1)));
+            corners.push_back(static_cast<std::uint32_t>(
+                scan.integer(words[static_cast<std::size_t>(k) + 1], "a corner", 0, points - 1)));
         }
         add_polygon(corners, soup);
     }

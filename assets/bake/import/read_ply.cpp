@@ -98,8 +98,7 @@ Header read_header(TextScan& scan) {
         } else if (words[0] == "element" && words.size() == 3) {
             const auto count = scan.integer(words[2], "the number of elements", 0,
                                             static_cast<std::int64_t>(scan.left()));
-            header.elements.push_back(
-                {std::string(words[1]), static_cast<std::size_t>(count), {}});
+            header.elements.push_back({std::string(words[1]), static_cast<std::size_t>(count), {}});
         } else if (words[0] == "property") {
             read_property(scan, words, header);
         } else if (words[0] != "comment" && words[0] != "obj_info") {
@@ -227,10 +226,9 @@ void read_faces(Values& values, const Element& element, Soup& soup) {
     for (std::size_t i = 0; i < element.count; ++i) {
         for (const auto& p : element.properties) {
             const bool is_corners = p.name == "vertex_indices" || p.name == "vertex_index";
-            const std::size_t n =
-                p.count ? whole(values, "a face's number of corners",
-                                values.next(*p.count, "a face"), values.left())
-                        : 1;
+            const std::size_t n = p.count ? whole(values, "a face's number of corners",
+                                                  values.next(*p.count, "a face"), values.left())
+                                          : 1;
             corners.clear();
             for (std::size_t k = 0; k < n; ++k) {
                 const double v = values.next(p.type, "a property of a face");

@@ -22,8 +22,7 @@ std::vector<Flat> flatten(std::span<const std::uint32_t> corners, const Soup& so
     glm::dvec3 area{0.0};
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const glm::dvec3 a = soup.point[corners[i]] - soup.point[corners[0]];
-        const glm::dvec3 b =
-            soup.point[corners[(i + 1) % corners.size()]] - soup.point[corners[0]];
+        const glm::dvec3 b = soup.point[corners[(i + 1) % corners.size()]] - soup.point[corners[0]];
         area += glm::cross(a, b);
     }
     int drop = 0; // the axis nearest to the normal
@@ -41,7 +40,8 @@ std::vector<Flat> flatten(std::span<const std::uint32_t> corners, const Soup& so
 
 bool is_ear(const std::vector<Flat>& flat, const std::vector<std::size_t>& ring, std::size_t at) {
     const std::size_t n = ring.size();
-    const Flat &a = flat[ring[(at + n - 1) % n]], &b = flat[ring[at]], &c = flat[ring[(at + 1) % n]];
+    const Flat &a = flat[ring[(at + n - 1) % n]], &b = flat[ring[at]],
+               &c = flat[ring[(at + 1) % n]];
     if (turn(a, b, c) <= 0.0) {
         return false;
     }
@@ -84,8 +84,8 @@ void add_polygon(std::span<const std::uint32_t> corners, Soup& soup) {
         }
         ear = ear == ring.size() ? 1 : ear; // a polygon that crosses itself: like a fan
         const std::size_t n = ring.size();
-        soup.triangles.push_back({corners[ring[(ear + n - 1) % n]], corners[ring[ear]],
-                                  corners[ring[(ear + 1) % n]]});
+        soup.triangles.push_back(
+            {corners[ring[(ear + n - 1) % n]], corners[ring[ear]], corners[ring[(ear + 1) % n]]});
         ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(ear));
     }
     soup.triangles.push_back({corners[ring[0]], corners[ring[1]], corners[ring[2]]});

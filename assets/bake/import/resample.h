@@ -9,8 +9,8 @@
 namespace bake {
 
 struct Resampled {
-    Surface surface;          // closed and manifold; may be of several pieces
-    Surface seen;             // triangles given that lie between inside and outside
+    Surface surface;           // closed and manifold; may be of several pieces
+    Surface seen;              // triangles given that lie between inside and outside
     double hidden_share = 0.0; // of the area given: walls within the body
 };
 

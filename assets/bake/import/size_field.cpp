@@ -1,19 +1,23 @@
 #include "assets/bake/import/size_field.h"
 
 #include "assets/bake/nearest.h"
-#include "assets/bake/remesh.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace bake {
 namespace {
 
 constexpr double kRadiiPerEdge = 1.8;     // of curvature
-constexpr double kThicknessPerEdge = 1.2; // one layer of tetrahedra through a thin place
+constexpr double kThicknessPerEdge = 1.5; // one layer of tetrahedra through a thin place
 constexpr double kCurvedShare = 0.5, kThinShare = 0.25; // of the edge, at least
+constexpr double kCreaseDeg = 45.0, kTipDeg = 180.0;
+constexpr double kMostCreases = 0.5;   // length of creases times edge, over area
+constexpr double kMostDangling = 0.05; // share of crease points where one crease ends
+constexpr int kSmoothings = 4;
 constexpr int kShrinks = 12;
-constexpr double kApart = 0.5; // cosine: the ball is held from the side, not by curvature
+constexpr double kFarSide = -0.3; // cosine at the ball's centre
 
 double ball_m(const NearestOnSurface& nearest, const glm::dvec3& p, const glm::dvec3& inward,
               double most_m) {
@@ -35,22 +39,94 @@ double ball_m(const NearestOnSurface& nearest, const glm::dvec3& p, const glm::d
     }
     const glm::dvec3 centre = p + radius_m * inward;
     const double cosine = glm::dot(p - centre, held - centre) / (radius_m * radius_m);
-    return held == p || cosine > kApart ? most_m : std::min(most_m, 2.0 * radius_m);
+    return held == p || cosine > kFarSide ? most_m : std::min(most_m, 2.0 * radius_m);
+}
+
+/// Creases of every point.
+std::vector<int> count_creases(const Surface& s, double crease_deg, double& length_m) {
+    std::vector<int> count(s.point_m.size(), 0);
+    length_m = 0.0;
+    if (crease_deg >= 180.0) {
+        return count;
+    }
+    const HalfEdgeMesh mesh = make_half_edges(s);
+    for (const auto e : mesh.edges()) {
+        const auto h = mesh.halfedge_handle(e, 0);
+        if (std::abs(mesh.calc_dihedral_angle(h)) > crease_deg * std::numbers::pi / 180.0) {
+            ++count[static_cast<std::size_t>(mesh.from_vertex_handle(h).idx())];
+            ++count[static_cast<std::size_t>(mesh.to_vertex_handle(h).idx())];
+            length_m += mesh.calc_edge_length(e);
+        }
+    }
+    return count;
+}
+
+/// Points to the middle of their neighbours, half the way; points on creases stay.
+Surface smoothed(Surface s, const std::vector<int>& creases) {
+    for (int round = 0; round < kSmoothings; ++round) {
+        std::vector<glm::dvec3> sum(s.point_m.size(), glm::dvec3{0.0});
+        std::vector<double> count(s.point_m.size(), 0.0);
+        for (const auto& t : s.triangles) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                sum[t[k]] += s.point_m[t[(k + 1) % 3]];
+                count[t[k]] += 1.0;
+            }
+        }
+        for (std::size_t v = 0; v < s.point_m.size(); ++v) {
+            if (count[v] > 0.0 && creases[v] == 0) {
+                s.point_m[v] = 0.5 * (s.point_m[v] + sum[v] / count[v]);
+            }
+        }
+    }
+    return s;
+}
+
+/// Smallest radius of curvature at every point, along the edges; none at creases.
+std::vector<double> radius_m(const Surface& s, const std::vector<int>& creases, double most_m) {
+    const auto normal = vertex_normals(s);
+    std::vector<double> radius(s.point_m.size(), most_m);
+    for (const auto& t : s.triangles) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto a = t[k], b = t[(k + 1) % 3];
+            const double bend = glm::length(normal[b] - normal[a]);
+            if (creases[a] > 0 || creases[b] > 0 || bend == 0.0) {
+                continue;
+            }
+            const double r = glm::length(s.point_m[b] - s.point_m[a]) / bend;
+            radius[a] = std::min(radius[a], r);
+            radius[b] = std::min(radius[b], r);
+        }
+    }
+    return radius;
+}
+
+double plain_count(double volume, double area, double h) {
+    return area / (0.5 * std::sqrt(3.0) * h * h) +
+           std::max(0.0, volume - 0.5 * h * area) * std::sqrt(2.0) / (h * h * h);
 }
 
 } // namespace
 
 double edge_for_nodes(double volume_m3, double area_m2, double nodes) {
-    const auto count = [&](double h) {
-        return area_m2 / (0.5 * std::sqrt(3.0) * h * h) +
-               std::max(0.0, volume_m3 - 0.5 * h * area_m2) * std::sqrt(2.0) / (h * h * h);
-    };
-    double low = 1e-5, high = 1.0; // falls with h
+    double low = 1e-5, high = 1.0; // the count falls with the edge
     for (int i = 0; i < 60; ++i) {
         const double middle = std::sqrt(low * high);
-        (count(middle) > nodes ? low : high) = middle;
+        (plain_count(volume_m3, area_m2, middle) > nodes ? low : high) = middle;
     }
     return high;
+}
+
+RemeshOptions edges_to_keep(const Surface& s, double edge_m) {
+    double length_m = 0.0;
+    const auto creases = count_creases(s, kCreaseDeg, length_m);
+    std::size_t on = 0, dangling = 0;
+    for (const int count : creases) {
+        on += count > 0 ? 1 : 0;
+        dangling += count == 1 ? 1 : 0;
+    }
+    const bool clear = static_cast<double>(dangling) <= kMostDangling * static_cast<double>(on) &&
+                       length_m * edge_m <= kMostCreases * area_m2(s);
+    return {.crease_deg = clear ? kCreaseDeg : 180.0, .tip_deg = kTipDeg};
 }
 
 std::vector<double> thickness_m(const Surface& s, double most_m) {
@@ -64,14 +140,33 @@ std::vector<double> thickness_m(const Surface& s, double most_m) {
     return thickness;
 }
 
-SizeAt shape_size(const Surface& s, double edge_m) {
-    std::vector<double> size = thickness_m(s, edge_m / kThicknessPerEdge);
-    for (double& m : size) {
-        m = std::clamp(kThicknessPerEdge * m, kThinShare * edge_m, edge_m);
+SizeAt shape_size(const Surface& skin, double edge_m, const RemeshOptions& keep) {
+    double ignored = 0.0;
+    const auto creases = count_creases(skin, keep.crease_deg, ignored);
+    const Surface smooth = smoothed(skin, creases);
+    std::vector<double> size = thickness_m(smooth, edge_m / kThicknessPerEdge);
+    const auto radius = radius_m(smooth, creases, edge_m / kRadiiPerEdge);
+    for (std::size_t v = 0; v < size.size(); ++v) {
+        const double thin = std::max(kThicknessPerEdge * size[v], kThinShare * edge_m);
+        const double curved = std::max(kRadiiPerEdge * radius[v], kCurvedShare * edge_m);
+        size[v] = std::min({thin, curved, edge_m});
     }
-    const SizeAt thin = graded_size(s, std::move(size));
-    const SizeAt curved = curvature_size(s, edge_m, kRadiiPerEdge, kCurvedShare);
-    return [thin, curved](const glm::dvec3& p) { return std::min(thin(p), curved(p)); };
+    return graded_size(skin, std::move(size));
+}
+
+double nodes_for(const Surface& skin, double volume_m3, const SizeAt& size) {
+    double boundary = 0.0, area = 0.0, mean_m = 0.0;
+    for (const auto& t : skin.triangles) {
+        const glm::dvec3 a = skin.point_m[t[0]], b = skin.point_m[t[1]], c = skin.point_m[t[2]];
+        const double m2 = 0.5 * glm::length(glm::cross(b - a, c - a));
+        const double h = size((a + b + c) / 3.0);
+        boundary += m2 / (0.5 * std::sqrt(3.0) * h * h);
+        area += m2;
+        mean_m += h * m2;
+    }
+    mean_m /= area;
+    return boundary + plain_count(volume_m3, area, mean_m) -
+           area / (0.5 * std::sqrt(3.0) * mean_m * mean_m);
 }
 
 } // namespace bake

@@ -45,9 +45,10 @@ void require_usable(const fs::path& out) {
         throw PathError(fmt::format(
             "--out {}: {}: accepted: a new folder, an empty one, or one of an earlier import",
             shown_path(out),
-            error    ? error.message()
-            : other ? "holds \"" + shown_path(foreign.filename()) + "\", which import does not write"
-                    : "is not empty and has no report.json"));
+            error ? error.message()
+            : other
+                ? "holds \"" + shown_path(foreign.filename()) + "\", which import does not write"
+                : "is not empty and has no report.json"));
     }
 }
 
@@ -95,8 +96,8 @@ void Staging::put_in_place() {
         return; // the old one is removed with this
     }
     if (std::rename(from, to) != 0) {
-        throw PathError(fmt::format("--out {}: cannot be written: {}", shown_path(out_),
-                                    std::strerror(errno)));
+        throw PathError(
+            fmt::format("--out {}: cannot be written: {}", shown_path(out_), std::strerror(errno)));
     }
     folder_.clear();
 }

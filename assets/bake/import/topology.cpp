@@ -101,14 +101,15 @@ bool pair_around(const Surface& s, std::span<const EdgeUse> edge, std::vector<st
     for (const auto& use : edge) {
         const std::size_t opposite = use.half / 3 * 3 + (use.half + 2 - use.half / 3 * 3) % 3;
         const glm::dvec3 r = s.point_m[from_point(s, opposite)] - s.point_m[low];
-        leaves.push_back({std::atan2(glm::dot(r, v), glm::dot(r, u)),
-                          from_point(s, use.half) == low, use.half});
+        leaves.push_back(
+            {std::atan2(glm::dot(r, v), glm::dot(r, u)), from_point(s, use.half) == low, use.half});
     }
     std::sort(leaves.begin(), leaves.end(), [](const Leaf& a, const Leaf& b) {
         if (a.angle != b.angle) {
             return a.angle < b.angle;
         }
-        return a.along != b.along ? a.along : a.half < b.half; // bodies that touch: close, then open
+        return a.along != b.along ? a.along
+                                  : a.half < b.half; // bodies that touch: close, then open
     });
     for (std::size_t i = 0; i < leaves.size(); ++i) {
         if (leaves[i].along == leaves[(i + 1) % leaves.size()].along) {

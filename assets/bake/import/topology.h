@@ -19,10 +19,10 @@ inline std::uint32_t to_point(const Surface& s, std::size_t half) {
 }
 
 struct Topology {
-    std::vector<std::int32_t> twin; // of every half edge, -1: none
-    std::size_t open_edges = 0;     // without a twin
-    std::size_t shared_edges = 0;   // of more than two triangles, paired around the edge
-    std::size_t turned = 0;         // triangles that were turned over
+    std::vector<std::int32_t> twin;            // of every half edge, -1: none
+    std::size_t open_edges = 0;                // without a twin
+    std::size_t shared_edges = 0;              // of more than two triangles, paired around the edge
+    std::size_t turned = 0;                    // triangles that were turned over
     std::optional<std::uint32_t> one_sided_at; // a triangle where orientation contradicts itself
 };
 

@@ -265,8 +265,9 @@ void close_seams(Surface& s, Notes& notes) {
     }
     const std::size_t welded = weld_near(s, reach_m);
     if (welded > 0) {
-        notes.repairs.push_back(fmt::format("{} points on open edges welded to others nearer than {}",
-                                            welded, notes.length(reach_m)));
+        notes.repairs.push_back(
+            fmt::format("{} points on open edges welded to others nearer than {}", welded,
+                        notes.length(reach_m)));
         drop_useless(s, notes);
     }
     std::size_t split = 0;
