@@ -94,11 +94,15 @@ Imported import_surface(std::span<const std::byte> bytes, const ImportOptions& a
 
     clock.begin("check and repair");
     Pieces pieces = clean(soup, result.notes);
+    result.found = pieces.closed.size() + (pieces.broken.triangles.empty() ? 0 : 1);
     const double edge_m = choose_edge_m(pieces, options);
     for (auto& spot : options.fine) {
         spot.edge_mm = kFineShare * edge_m / kMm;
     }
     auto bodies = separate_bodies(std::move(pieces), edge_m, result.notes, clock);
+    for (const auto& b : bodies) {
+        result.found -= b.body.cavity_m.size();
+    }
     if (options.largest) {
         keep_largest(bodies, result.notes);
     }

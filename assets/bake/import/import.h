@@ -47,6 +47,7 @@ struct Imported {
     Notes notes;
     std::string format;
     std::size_t triangles = 0; // in the file
+    std::size_t found = 0;     // bodies in the file, specks too; a cavity is none
     std::vector<ImportedBody> bodies;
     std::vector<Phase> phases;
     double seconds = 0.0;

@@ -78,7 +78,8 @@ Json body_json(const ImportedBody& b, bool with_times) {
 std::string import_json(const Imported& imported, const ImportOptions& options, bool with_times) {
     const Total total = total_of(imported);
     Json j;
-    j["bodies"] = imported.bodies.size();
+    j["bodies"] = imported.found;
+    j["organs"] = imported.bodies.size();
     j["triangles"] = imported.triangles;
     j["repairs"] = imported.notes.repairs;
     j["problems"] = imported.notes.problems;
@@ -118,8 +119,9 @@ std::string import_json(const Imported& imported, const ImportOptions& options, 
 
 std::string import_text(const Imported& imported, const ImportOptions& options) {
     std::string text =
-        fmt::format("{} triangles ({}), {} {}\n", imported.triangles, imported.format,
-                    imported.bodies.size(), imported.bodies.size() == 1 ? "body" : "bodies");
+        fmt::format("{} triangles ({}), {} {}, {} {}\n", imported.triangles, imported.format,
+                    imported.found, imported.found == 1 ? "body" : "bodies", imported.bodies.size(),
+                    imported.bodies.size() == 1 ? "organ" : "organs");
     for (const auto& line : imported.notes.repairs) {
         text += fmt::format("repaired: {}\n", line);
     }

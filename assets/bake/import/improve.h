@@ -10,7 +10,7 @@ namespace bake {
 
 struct ImproveOptions {
     double wanted_deg = 16.0;   // dihedral angles below it, or that near to 180, are worked on
-    double boundary_deg = 11.0; // and below this one boundary nodes move too
+    double boundary_deg = 14.0; // and below this one boundary nodes move too
     double reach_m = 0.0;       // how far a node of the boundary may be from the skin
     double volume_m3 = 0.0;     // of the body, to be held
     int sweeps = 12;
