@@ -176,6 +176,18 @@ std::vector<GivenBody> sample_anew(const Surface& given, double edge_m, Notes& n
     return bodies;
 }
 
+/// Coarser by steps, so that no triangles get across each other that did not before, if possible.
+Surface coarsen_cleanly(const Surface& given, double edge_m) {
+    Surface coarse;
+    for (const double share : {1.0, 0.6, 0.3}) {
+        coarse = coarsen(given, share * edge_m);
+        if (find_crossings(coarse, 1).empty()) {
+            break;
+        }
+    }
+    return coarse;
+}
+
 } // namespace
 
 std::vector<GivenBody> separate_bodies(Pieces given, double edge_m, Notes& notes,
@@ -188,7 +200,8 @@ std::vector<GivenBody> separate_bodies(Pieces given, double edge_m, Notes& notes
     for (auto& b : bodies) {
         seen.push_back(b.surface);
         if (b.surface.triangles.size() > kMostChecked) {
-            b.surface = coarsen(b.surface, kCellPerEdge * edge_m);
+            clock.begin("coarsening");
+            b.surface = coarsen_cleanly(b.surface, kCellPerEdge * edge_m);
         }
     }
     clock.begin("intersections");

@@ -188,7 +188,7 @@ ImportedBody make_organ(const Body& body, const Surface& seen, const BodyPlan& p
     organ.material = options.material;
 
     clock.begin(plan.name + ": skin");
-    const RemeshOptions keep = edges_to_keep(body.surface, plan.edge_m);
+    const RemeshOptions keep = edges_to_keep(body.surface, made.skin_m);
     const Surface skin = make_skin(body.surface, made.skin_m, 1 + body.cavity_m.size(), keep);
     organ.surface.rest_m = skin.point_m;
     organ.surface.triangles = skin.triangles;

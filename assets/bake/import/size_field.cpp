@@ -13,7 +13,7 @@ constexpr double kRadiiPerEdge = 1.8;     // of curvature
 constexpr double kThicknessPerEdge = 1.5; // one layer of tetrahedra through a thin place
 constexpr double kCurvedShare = 0.5, kThinShare = 0.25; // of the edge, at least
 constexpr double kCreaseDeg = 45.0, kTipDeg = 180.0;
-constexpr double kMostCreases = 0.5;   // length of creases times edge, over area
+constexpr double kMostCreases = 0.3;   // length of creases times the skin's edge, over area
 constexpr double kMostDangling = 0.05; // share of crease points where one crease ends
 constexpr int kSmoothings = 4;
 constexpr int kShrinks = 12;
@@ -116,7 +116,7 @@ double edge_for_nodes(double volume_m3, double area_m2, double nodes) {
     return high;
 }
 
-RemeshOptions edges_to_keep(const Surface& s, double edge_m) {
+RemeshOptions edges_to_keep(const Surface& s, double skin_m) {
     double length_m = 0.0;
     const auto creases = count_creases(s, kCreaseDeg, length_m);
     std::size_t on = 0, dangling = 0;
@@ -125,7 +125,7 @@ RemeshOptions edges_to_keep(const Surface& s, double edge_m) {
         dangling += count == 1 ? 1 : 0;
     }
     const bool clear = static_cast<double>(dangling) <= kMostDangling * static_cast<double>(on) &&
-                       length_m * edge_m <= kMostCreases * area_m2(s);
+                       length_m * skin_m <= kMostCreases * area_m2(s);
     return {.crease_deg = clear ? kCreaseDeg : 180.0, .tip_deg = kTipDeg};
 }
 

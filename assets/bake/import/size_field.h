@@ -13,7 +13,7 @@ double edge_for_nodes(double volume_m3, double area_m2, double nodes);
 
 /// How remeshing should treat a surface: creases are kept if the surface has few and clear ones, as
 /// cut planes and machined parts have; steps of voxels and noise are not creases. Sharp tips stay.
-RemeshOptions edges_to_keep(const Surface& surface, double edge_m);
+RemeshOptions edges_to_keep(const Surface& surface, double skin_m);
 
 /// Diameter of the largest ball that touches the surface at each point from inside (shrinking
 /// balls, Ma, Bae & Choi 2012), or from outside where that is smaller; at most `most_m`. A ball

@@ -1,0 +1,7 @@
+// tests/fuzz/stl_fuzz.cpp
+// The STL reader; see surface_fuzz.h.
+#include "tests/fuzz/surface_fuzz.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    return fuzz::read(bake::read_stl, data, size);
+}
