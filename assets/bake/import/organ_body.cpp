@@ -22,20 +22,6 @@ constexpr double kAskedDihedralDeg = 12.0; // of TetGen
 constexpr double kMostNodesShare = 1.6, kMostGrowth = 1.4;
 constexpr int kImproveSweeps = 6;
 
-/// Where tissue is held. To be replaced when an organ may float: then nothing is held.
-std::vector<std::uint8_t> hold(const tissue::TetMesh& mesh) {
-    double low = mesh.rest_m[0].z, high = low;
-    for (const auto& p : mesh.rest_m) {
-        low = std::min(low, p.z);
-        high = std::max(high, p.z);
-    }
-    std::vector<std::uint8_t> held;
-    for (const auto& p : mesh.rest_m) {
-        held.push_back(p.z < 0.5 * (low + high) ? 1 : 0);
-    }
-    return held;
-}
-
 struct Solid {
     tissue::TetMesh mesh;
     Surface boundary;
@@ -161,15 +147,17 @@ Solid make_solid(const Shape& shape, const BodyPlan& plan, const ImportOptions& 
         100.0 * kMostVolumeChange, notes.length(kMostAway * made.edge_m)));
 }
 
+/// The organ floats: where it is held is the scene's to say. What linear tetrahedra owe under a tip
+/// hardly depends on it, so a weak bed stands in (tissue/mesh/elastic_bed.h).
 void add_response(ImportedBody& made, PhaseClock& clock) {
     tissue::BakedOrgan& organ = made.organ;
-    organ.anchored = hold(organ.mesh);
+    organ.anchored.assign(organ.mesh.rest_m.size(), 0);
     clock.begin("footprints");
     const tissue::FootprintOptions footprint{.tip_radius_max_m = organ.tip_radius_max_m};
     tissue::make_footprints(organ.mesh, organ.anchored, footprint, organ.surface);
     clock.begin("mesh terms");
     tissue::make_mesh_terms(organ.mesh, organ.material.poisson, organ.anchored, footprint,
-                            organ.surface);
+                            organ.surface, tissue::weak_bed(organ.mesh));
 }
 
 } // namespace

@@ -68,6 +68,17 @@ Colour quality_colour(double dihedral_deg) {
     return t < 0.5 ? red + (yellow - red) * (2.0 * t) : yellow + (green - yellow) * (2.0 * t - 1.0);
 }
 
+/// Fixed, or in an elastic bed.
+std::vector<char> held_nodes(const tissue::BakedOrgan& organ) {
+    std::vector<char> held(organ.anchored.begin(), organ.anchored.end());
+    for (const auto& sample : organ.bed) {
+        for (const auto v : organ.mesh.tets[sample.tet]) {
+            held[v] = 1;
+        }
+    }
+    return held;
+}
+
 void draw_skin(Raster& raster, const View& view, const ImportedBody& body) {
     const auto& s = body.organ.surface;
     for (const auto& t : s.triangles) {
@@ -80,8 +91,9 @@ void draw_skin(Raster& raster, const View& view, const ImportedBody& body) {
             outside[v] = 1;
         }
     }
-    for (std::size_t v = 0; v < body.organ.anchored.size(); ++v) {
-        if (body.organ.anchored[v] && outside[v]) {
+    const auto held = held_nodes(body.organ);
+    for (std::size_t v = 0; v < held.size(); ++v) {
+        if (held[v] && outside[v]) {
             raster.dot(view(body.organ.mesh.rest_m[v]), 9.0, kHeld);
         }
     }
@@ -143,8 +155,16 @@ void draw_key(Raster& raster, const Imported& imported) {
     if (tets == 0) {
         return;
     }
-    raster.box(kMargin, y + 62, 22, 22, kHeld);
-    raster.words(kMargin + 40, y + 60, "HELD", 5, kGrey);
+    const bool any_held =
+        std::any_of(imported.bodies.begin(), imported.bodies.end(), [](const ImportedBody& b) {
+            const auto held = held_nodes(b.organ);
+            return std::find(held.begin(), held.end(), 1) != held.end();
+        });
+    if (any_held) {
+        raster.box(kMargin, y + 62, 22, 22, kHeld);
+    }
+    raster.words(kMargin + (any_held ? 40 : 0), y + 60, any_held ? "HELD" : "HELD NOWHERE", 5,
+                 kGrey);
     const int x = kWidth / 2 + kMargin;
     raster.words(x, y,
                  fmt::format("{} NODES  {} TETRAHEDRA  WORST {:.1f} DEG", nodes, tets, worst_deg),
