@@ -1,4 +1,5 @@
-// bake: recipe to baked organ, at build time or by hand; and surface file to organs (import_main). One thread; TetGen in a child process.
+// bake: recipe to baked organ, at build time or by hand; and surface file to organs (import_main).
+// One thread; TetGen in a child process.
 //
 // Licence: this source is Apache-2.0 like the rest, but the program links TetGen, which is
 // AGPL-3.0-or-later; the built program may be passed on under the AGPL-3.0 only. What it writes is

@@ -157,8 +157,8 @@ tissue::Material find_material(const std::string& text, const std::string& file_
         for (const auto& key : all.keys()) {
             names += (names.empty() ? "" : ", ") + key;
         }
-        throw RecipeError(fmt::format("{}: there is no material \"{}\": accepted: {}", file_name,
-                                      name, names));
+        throw RecipeError(
+            fmt::format("{}: there is no material \"{}\": accepted: {}", file_name, name, names));
     }
     return read_material(all.table(name.c_str()));
 }

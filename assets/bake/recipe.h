@@ -62,8 +62,8 @@ struct Recipe {
 /// Throws RecipeError.
 Recipe parse_recipe(const std::string& text, const std::string& file_name);
 
-/// Table NAME of a text of materials (organs/materials.toml); throws RecipeError, with the names that
-/// are there if NAME is not.
+/// Table NAME of a text of materials (organs/materials.toml); throws RecipeError, with the names
+/// that are there if NAME is not.
 tissue::Material find_material(const std::string& text, const std::string& file_name,
                                const std::string& name);
 

@@ -178,8 +178,8 @@ TetAnswer tetrahedralise(const Surface& boundary, const TetOptions& o) {
 
     TetAnswer answer;
     for (const auto& [what, switches] : chain) {
-        const ChildAnswer child =
-            run_in_child([&] { return run_tetgen(boundary, o.cavity_m, switches); }, o.time_limit_s);
+        const ChildAnswer child = run_in_child(
+            [&] { return run_tetgen(boundary, o.cavity_m, switches); }, o.time_limit_s);
         answer.attempts.push_back({what, child.done ? "done" : child.reason, child.seconds});
         if (child.done) {
             answer.mesh = unpack(child.bytes);

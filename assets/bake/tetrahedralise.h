@@ -14,7 +14,7 @@ struct TetOptions {
     double edge_m = 0.013; // inside; bounds the volume of a tetrahedron
     double quality_ratio = 1.2;
     double quality_dihedral_deg = 15.0;
-    double time_limit_s = 60.0;             // of each attempt
+    double time_limit_s = 60.0;            // of each attempt
     std::vector<glm::dvec3> cavity_m = {}; // a place in each cavity, which stays empty
 };
 

@@ -8,12 +8,14 @@
 #include "tissue/response/mesh_term.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace bake {
 namespace {
 
-constexpr double kSkinPerEdge = 1.0 / 3.0; // skin edge, of the tetrahedra's
+constexpr double kSkinLeast = 1.0 / 3.0, kSkinMost = 0.6; // skin edge, of the tetrahedra's
+constexpr double kSkinPoints = 3000.0; // before grading; each has its own mesh term, and is drawn
 constexpr double kMostVolumeChange = 0.01;
 constexpr double kMostAway = 0.5; // Hausdorff distance, of the edge
 constexpr double kAway = 0.4;     // of the boundary from the skin, of the edge, that is aimed at
@@ -147,6 +149,25 @@ Solid make_solid(const Shape& shape, const BodyPlan& plan, const ImportOptions& 
         100.0 * kMostVolumeChange, notes.length(kMostAway * made.edge_m)));
 }
 
+/// The edge at which even triangles have kSkinPoints points, sqrt(3)/2 h^2 each, within limits.
+double skin_edge_m(double area_m2, double edge_m) {
+    return std::clamp(std::sqrt(area_m2 / (0.5 * std::sqrt(3.0) * kSkinPoints)),
+                      kSkinLeast * edge_m, kSkinMost * edge_m);
+}
+
+/// make_mesh_terms calls a plain function; this is whom it tells.
+PhaseClock* listener = nullptr;
+
+void tell_share(double share) {
+    static int said = 0; // tenths
+    const int now = static_cast<int>(10.0 * share);
+    said = std::min(said, now); // the next body begins again
+    if (now > said && listener != nullptr) {
+        said = now;
+        listener->say(fmt::format("  mesh terms {} %", 10 * now));
+    }
+}
+
 /// The organ floats: where it is held is the scene's to say. What linear tetrahedra owe under a tip
 /// hardly depends on it, so a weak bed stands in (tissue/mesh/elastic_bed.h).
 void add_response(ImportedBody& made, PhaseClock& clock) {
@@ -156,8 +177,10 @@ void add_response(ImportedBody& made, PhaseClock& clock) {
     const tissue::FootprintOptions footprint{.tip_radius_max_m = organ.tip_radius_max_m};
     tissue::make_footprints(organ.mesh, organ.anchored, footprint, organ.surface);
     clock.begin("mesh terms");
+    listener = &clock;
     tissue::make_mesh_terms(organ.mesh, organ.material.poisson, organ.anchored, footprint,
-                            organ.surface, tissue::weak_bed(organ.mesh));
+                            organ.surface, tissue::weak_bed(organ.mesh), tell_share);
+    listener = nullptr;
 }
 
 } // namespace
@@ -168,7 +191,7 @@ ImportedBody make_organ(const Body& body, const Surface& seen, const BodyPlan& p
     made.given = body.surface;
     made.given_m3 = body.volume_m3;
     made.edge_m = plan.edge_m;
-    made.skin_m = kSkinPerEdge * plan.edge_m;
+    made.skin_m = skin_edge_m(area_m2(body.surface), plan.edge_m);
     tissue::BakedOrgan& organ = made.organ;
     organ.name = plan.name;
     organ.rigid = options.rigid;
