@@ -62,21 +62,6 @@ void require_good(const Surface& surface, const char* what) {
     }
 }
 
-SizeAt with_fine_spots(SizeAt base, const std::vector<FineSpot>& spots) {
-    if (spots.empty()) {
-        return base;
-    }
-    return [base = std::move(base), spots](const glm::dvec3& p_m) {
-        double size_m = base(p_m);
-        for (const auto& s : spots) {
-            const double beyond_mm =
-                std::max(0.0, glm::length(p_m / kMm - s.centre_mm) - s.radius_mm);
-            size_m = std::min(size_m, kMm * (s.edge_mm + s.growth * beyond_mm));
-        }
-        return size_m;
-    };
-}
-
 SizeAt even(double edge_m) {
     return [edge_m](const glm::dvec3&) { return edge_m; };
 }
@@ -96,7 +81,7 @@ Surfaces liver_surfaces(const Recipe& recipe, const LobedShape& shape, PhaseCloc
 
     clock.begin("boundary");
     const SizeAt size =
-        with_fine_spots(curvature_size(s.skin, edge_m, kRadiiPerEdge, kShortestShare), recipe.fine);
+        with_spots(curvature_size(s.skin, edge_m, kRadiiPerEdge, kShortestShare), recipe.fine);
     s.boundary = remesh(s.skin, size, {});
     fit_to_skin(s.skin, kFitRounds, 180.0, s.boundary);
     require_good(s.boundary, "the boundary of the tetrahedra");
@@ -113,8 +98,8 @@ Surfaces box_surfaces(const Recipe& recipe, const BoxShape& shape, PhaseClock& c
     if (!shape.cells) {
         clock.begin("boundary");
         const Surface start = box_surface(size_m, edge_m);
-        s.boundary = remesh(start, with_fine_spots(even(edge_m), recipe.fine),
-                            {.crease_deg = kBoxCreaseDeg});
+        s.boundary =
+            remesh(start, with_spots(even(edge_m), recipe.fine), {.crease_deg = kBoxCreaseDeg});
         require_good(s.boundary, "the boundary of the tetrahedra");
     }
     return s;

@@ -2,6 +2,7 @@
 // What to bake, as a TOML file says it. Called by bake's main and by tests; text in, struct out.
 #pragma once
 
+#include "assets/bake/fine_spot.h"
 #include "assets/bake/shape.h"
 #include "tissue/material/elastic.h"
 
@@ -25,12 +26,6 @@ struct AnchorSphere {
 };
 struct AnchorBox {
     glm::dvec3 low_mm{0.0}, high_mm{0.0};
-};
-
-/// A place with shorter edges: edge_mm up to radius_mm, then growing by `growth` per unit.
-struct FineSpot {
-    glm::dvec3 centre_mm{0.0};
-    double radius_mm = 0.0, edge_mm = 0.0, growth = 0.5;
 };
 
 /// Box [0, size] for tests on a block of known answers.

@@ -28,21 +28,6 @@ void hold_volume(Surface& s, double wanted_m3) {
 
 } // namespace
 
-SizeAt with_spots(SizeAt base, std::vector<FineSpot> spots) {
-    if (spots.empty()) {
-        return base;
-    }
-    return [base = std::move(base), spots = std::move(spots)](const glm::dvec3& p_m) {
-        double size_m = base(p_m);
-        for (const auto& s : spots) {
-            const double beyond_mm =
-                std::max(0.0, glm::length(p_m / kMm - s.centre_mm) - s.radius_mm);
-            size_m = std::min(size_m, kMm * (s.edge_mm + s.growth * beyond_mm));
-        }
-        return size_m;
-    };
-}
-
 void add_spots(const std::vector<glm::dvec3>& places, const SizeAt& size,
                std::vector<FineSpot>& spots) {
     constexpr double kFiner = 0.65; // of the edge there

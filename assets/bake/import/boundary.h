@@ -30,9 +30,6 @@ struct Boundary {
 Boundary make_boundary(const Surface& skin, const SizeAt& by_shape, const BoundaryOptions& options,
                        const Notes& notes);
 
-/// `base`, but shorter at the spots.
-SizeAt with_spots(SizeAt base, std::vector<FineSpot> spots);
-
 /// Spots with shorter edges than `size` at places that went wrong.
 void add_spots(const std::vector<glm::dvec3>& places, const SizeAt& size,
                std::vector<FineSpot>& spots);
