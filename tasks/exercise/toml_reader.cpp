@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-#include <stdexcept>
 #include <toml.hpp>
 
 namespace tasks {
@@ -20,7 +19,7 @@ namespace {
 constexpr int kMaxNesting = 32;
 
 [[noreturn]] void fail(const std::string& file, std::size_t line, const std::string& what) {
-    throw std::invalid_argument(file + ":" + std::to_string(line) + ": " + what);
+    throw BadInput({file, line, {}, {}}, what);
 }
 
 std::string number_text(double value) {
@@ -79,6 +78,13 @@ std::size_t line_of_deep_nesting(std::string_view text) {
 }
 
 } // namespace
+
+std::string message_of(const Mention& at, const std::string& accepted) {
+    std::string text = at.file + ":" + std::to_string(at.line) + ": ";
+    if (!at.key.empty())
+        text += at.key + (at.value.empty() ? " is missing: " : " = " + at.value + ": ");
+    return text + accepted;
+}
 
 TomlTable TomlTable::parse(std::string_view text, std::string_view file) {
     const std::string name(file);
@@ -207,12 +213,16 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
     return found;
 }
 
-void TomlTable::refuse(std::string_view key, const std::string& accepted) const {
+Mention TomlTable::mention(std::string_view key) const {
     const std::string name(key);
     if (!has(key))
-        fail(node_->file, node_->line, name + " is missing: " + accepted);
+        return {node_->file, node_->line, name, {}};
     const toml::value& value = node_->value.at(name);
-    fail(node_->file, value.location().line(), name + " = " + shown(value) + ": " + accepted);
+    return {node_->file, value.location().line(), name, shown(value)};
+}
+
+void TomlTable::refuse(std::string_view key, const std::string& accepted) const {
+    throw BadInput(mention(key), accepted);
 }
 
 } // namespace tasks

@@ -1,13 +1,14 @@
 // tasks/exercise/toml_reader.h
 // Reads tables of TOML bytes with messages a person can act on: file, line, key, value and what
 // would be accepted. Called by the parsers of tasks/ (exercises, scripts); toml11 stays behind it.
-// Not real-time safe. Everything throws std::invalid_argument and nothing else.
+// Not real-time safe. Everything throws BadInput and nothing else.
 #pragma once
 
 #include <glm/vec3.hpp>
 #include <initializer_list>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,25 @@ namespace tasks {
 
 struct Range { // inclusive
     double min = 0.0, max = 0.0;
+};
+
+/// A key and its value as they stand in a file: what a person has to look at.
+struct Mention {
+    std::string file;
+    std::size_t line = 0;
+    std::string key;   // empty: the line itself is meant
+    std::string value; // as written, cut to one short line; empty: the key is missing
+};
+
+/// "file:line: key = value: `accepted`", or "key is missing" without a value.
+std::string message_of(const Mention& at, const std::string& accepted);
+
+struct BadInput : std::invalid_argument {
+    BadInput(Mention where, std::string what_is_accepted)
+        : std::invalid_argument(message_of(where, what_is_accepted)), at(std::move(where)),
+          accepted(std::move(what_is_accepted)) {}
+    Mention at;
+    std::string accepted;
 };
 
 /// One table of a file. Copies are cheap views of the same parsed file.
@@ -42,7 +62,9 @@ class TomlTable {
     /// [[key]] tables in the order of the file; none if the key is absent.
     std::vector<TomlTable> tables(std::string_view key) const;
 
-    /// Throws: "file:line: key = value: `accepted`". Without the key: names the table's line.
+    /// Where `key` stands, or the table if the key is missing.
+    Mention mention(std::string_view key) const;
+    /// Throws BadInput with mention(key).
     [[noreturn]] void refuse(std::string_view key, const std::string& accepted) const;
 
   private:

@@ -18,6 +18,7 @@ struct TouchTarget {
     std::string id;
     Role role = Role::right;
     glm::dvec3 at_m{0.0}; // rest place near the surface; the scene snaps it on
+    std::string organ{};  // whose surface; empty: the nearest
 };
 
 struct TouchPoints { // from assets/exercises/*.toml

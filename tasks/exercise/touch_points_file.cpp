@@ -12,11 +12,12 @@ constexpr Range kPlace_mm{-500.0, 500.0}; // no abdomen is larger
 constexpr Range kForce_n{0.01, 20.0};     // below: not felt through a port; above: any organ tears
 
 TouchTarget parse_target(const TomlTable& table, const TouchPoints& exercise) {
-    table.accept_only({"id", "role", "at_mm"});
+    table.accept_only({"id", "role", "at_mm", "organ"});
     TouchTarget target;
     target.id = table.text("id");
     target.role = static_cast<Role>(table.choice("role", {"left", "right", "assist"}));
     target.at_m = table.place_mm("at_mm", kPlace_mm);
+    target.organ = table.text("organ", "");
     for (const TouchTarget& other : exercise.target) {
         if (other.id == target.id)
             table.refuse("id", "an id that no other target has");
