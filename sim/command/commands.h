@@ -15,6 +15,7 @@ void add_replay(CLI::App& app, int& exit_code);
 void add_rescore(CLI::App& app, int& exit_code);
 void add_trainee(CLI::App& app, int& exit_code);
 void add_note(CLI::App& app, int& exit_code);
+void add_scene(CLI::App& app, int& exit_code);
 void add_study(CLI::App& app, int& exit_code);
 void add_import(CLI::App& app, int& exit_code);
 void add_devices(CLI::App& app, int& exit_code);

@@ -11,7 +11,7 @@ namespace sim {
 namespace {
 
 struct ReplayArguments {
-    std::string db, coupling;
+    std::string db, coupling, scene;
     std::int64_t attempt = 0;
     bool json = false;
 };
@@ -26,7 +26,7 @@ void replay(const ReplayArguments& a, int& exit_code) {
     for (const auto& bytes : logbook.chunks(a.attempt)) {
         chunks.push_back(tasks::decode_chunk(bytes));
     }
-    const std::unique_ptr<Session> session = session_of(*recorded);
+    const std::unique_ptr<Session> session = session_of(*recorded, a.scene);
     const bool same_coupling = a.coupling.empty() || a.coupling == recorded->coupling;
     if (!same_coupling)
         session->haptics.coupling = coupling_named(a.coupling);
@@ -58,6 +58,7 @@ void add_replay(CLI::App& app, int& exit_code) {
     CLI::App* c = app.add_subcommand("replay", "A recorded attempt again, from its motion");
     c->add_option("db", a->db, "Logbook")->required()->check(CLI::ExistingFile);
     c->add_option("attempt", a->attempt, "Number of the attempt")->required();
+    c->add_option("--scene", a->scene, "Directory of the scene, if it is not a shipped one");
     c->add_option("--coupling", a->coupling, "Another coupling: reports the force difference");
     c->add_flag("--json", a->json, "One JSON object instead of a table");
     c->callback([a, &exit_code] { replay(*a, exit_code); });

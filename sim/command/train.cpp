@@ -5,6 +5,7 @@
 #include "sim/command/stage.h"
 #include "sim/io/files.h"
 #include "sim/io/guard.h"
+#include "sim/session/scene_place.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -25,14 +26,14 @@ class Trainer {
         : a_(a), window_({.width_px = a.width, .height_px = a.height, .text_scale = a.text_scale}),
           logbook_(a.log.empty() ? (user_data_dir() / "station.db").string() : a.log),
           log_path_(a.log.empty() ? (user_data_dir() / "station.db").string() : a.log) {
-        for (const auto& entry : std::filesystem::directory_iterator(
-                 find_asset("exercises", "touch-points").parent_path())) {
-            if (entry.path().extension() == ".toml")
-                names_.push_back(entry.path().stem().string());
+        const ScenePlace place = find_scene(a.scene);
+        names_ = exercise_names(place);
+        if (names_.empty()) {
+            throw std::runtime_error(
+                fmt::format("{}: has no exercises/*.toml", place.folder.string()));
         }
-        std::sort(names_.begin(), names_.end());
         for (const std::string& name : names_) {
-            const auto path = find_asset("exercises", name);
+            const auto path = find_exercise(place, name);
             exercises_.push_back(tasks::parse_touch_points(read_text(path), path.string()));
             screens_.menu.exercises.push_back(
                 {.title = exercises_.back().title,
@@ -197,7 +198,7 @@ void add_train(CLI::App& app, int&) {
     auto a = std::make_shared<TrainArguments>();
     CLI::App* c = app.add_subcommand("train", "The window: pick an exercise, train, get a score");
     c->add_option("exercise", a->exercise, "Go straight to this exercise's card");
-    c->add_option("--scene", a->scene, "Name or file of a scene");
+    c->add_option("--scene", a->scene, "Name, directory or file of a scene");
     c->add_option("--log", a->log, "Logbook; default: the user's data directory");
     c->add_option("--text-scale", a->text_scale, "Size of all text")->check(CLI::Range(1.0, 2.0));
     c->add_option("--width", a->width, "Of the window, pixels")->check(CLI::Range(800, 7680));

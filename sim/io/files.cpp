@@ -21,9 +21,17 @@ std::filesystem::path folder(const char* variable, const char* built_in) {
 
 } // namespace
 
-std::vector<std::byte> read_bytes(const std::filesystem::path& path) {
-    if (std::filesystem::is_directory(path)) {
-        throw std::runtime_error(fmt::format("{}: is a directory, not a file", path.string()));
+std::vector<std::byte> read_bytes(const std::filesystem::path& path, std::size_t most) {
+    std::error_code absent; // said better below
+    const std::filesystem::file_status status = std::filesystem::status(path, absent);
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+        throw std::runtime_error(fmt::format("{}: is {}, not a file", path.string(),
+                                             is_directory(status) ? "a directory" : "special"));
+    }
+    const std::uintmax_t size = std::filesystem::file_size(path, absent);
+    if (!absent && size > most) {
+        throw std::runtime_error(
+            fmt::format("{}: has {} bytes: at most {}", path.string(), size, most));
     }
     std::ifstream in(path, std::ios::binary);
     if (!in) {
@@ -58,11 +66,14 @@ void write_text(const std::filesystem::path& path, std::string_view text) {
     std::filesystem::rename(part, path);
 }
 
+std::filesystem::path assets_dir() {
+    return folder("TROCAR_ASSETS", TROCAR_ASSETS);
+}
+
 std::filesystem::path find_asset(std::string_view kind, const std::string& name_or_path) {
     if (std::filesystem::is_regular_file(name_or_path))
         return name_or_path;
-    const std::filesystem::path named =
-        folder("TROCAR_ASSETS", TROCAR_ASSETS) / kind / (name_or_path + ".toml");
+    const std::filesystem::path named = assets_dir() / kind / (name_or_path + ".toml");
     if (std::filesystem::is_regular_file(named))
         return named;
     throw std::runtime_error(fmt::format("\"{}\" is neither a file nor one of the {} (tried {})",

@@ -12,13 +12,18 @@
 
 namespace sim {
 
-/// Throws std::runtime_error naming the path and the system's reason.
-std::vector<std::byte> read_bytes(const std::filesystem::path& path);
+/// Throws std::runtime_error naming the path and the system's reason, also for anything but a
+/// regular file and for one larger than `most` bytes.
+std::vector<std::byte> read_bytes(const std::filesystem::path& path,
+                                  std::size_t most = std::size_t{1} << 30);
 std::string read_text(const std::filesystem::path& path);
 void write_text(const std::filesystem::path& path, std::string_view text);
 
-/// assets/KIND/NAME.toml, or `name_or_path` itself if it is a file. The folder is the one of the
-/// source tree, or $TROCAR_ASSETS. Throws naming both places that were tried.
+/// The source tree's assets, or $TROCAR_ASSETS.
+std::filesystem::path assets_dir();
+
+/// assets/KIND/NAME.toml, or `name_or_path` itself if it is a file. Throws naming both
+/// places that were tried.
 std::filesystem::path find_asset(std::string_view kind, const std::string& name_or_path);
 
 /// Baked organs: the build's organ folder, or $TROCAR_ORGANS.

@@ -1,25 +1,24 @@
 // sim/session/scene.h
-// A scene: organs, materials, tools with their trocars, the endoscope. Read from a TOML file and
-// the baked organs that it names; everything that an attempt needs to be judged again later is in
-// the text, which goes into the logbook.
+// A scene: organs with what holds them, materials, tools with their trocars, the endoscope. Read
+// from scene.toml and the baked organs that it names; everything that an attempt needs to be judged
+// again later is in the text, which goes into the logbook. Setup only, not real time.
 #pragma once
 
 #include "haptics/device/trocar.h"
 #include "sim/loop/haptic_loop.h"
 #include "sim/loop/tissue_loop.h"
+#include "sim/session/anchor.h"
+#include "sim/session/scene_place.h"
 #include "tasks/exercise/observation.h"
-
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <string_view>
 
 namespace sim {
 
 struct SceneOrgan {
     std::string name;
-    std::string file; // relative to the organ folder
+    std::string file; // beside scene.toml
     tissue::Material material;
+    std::vector<Anchor> anchor;   // if any, instead of what the organ was baked with
+    double hold_length_m = 10e-3; // L of tissue/mesh/elastic_bed.h
 };
 
 struct SceneTool {
@@ -37,23 +36,48 @@ struct Scene {
     tasks::View view;
 };
 
-/// Parses a scene file. Throws std::invalid_argument with file, line, key, value and what would
-/// be accepted.
-Scene parse_scene(std::string_view text, std::string_view file);
+/// What is wrong with a file: all of it, for `trocar scene check`. Where one is passed, mistakes
+/// are added to it and reading goes on; where it is null, the first one is thrown.
+using Mistakes = std::vector<tasks::BadInput>;
+
+/// Parses a scene file. tasks::BadInput: file, line, key, value and what would be accepted. With
+/// mistakes the scene is only good for telling what else is wrong.
+Scene parse_scene(std::string_view text, std::string_view file, Mistakes* mistakes = nullptr);
 
 struct LoadedScene {
     Scene scene;
+    ScenePlace place;
     std::vector<std::shared_ptr<const tissue::BakedOrgan>> organ; // beside scene.organ
-    std::string hash; // SHA-256 of the text and the organs' bytes
+    std::string hash; // SHA-256 of text, organs' bytes and region files; not of their place
 };
-/// The baked organs of a scene. Throws with the path that failed.
-LoadedScene load_organs(Scene scene);
-/// `scene`: a name ("basic") or a path to a .toml file. Throws with the path that failed.
+/// The baked organs of a scene, held as it says. tasks::BadInput names the key of a file that is
+/// missing or damaged.
+LoadedScene load_organs(Scene scene, ScenePlace place, Mistakes* mistakes = nullptr);
+/// `scene`: a name ("basic"), a directory or a .toml file.
 LoadedScene load_scene(const std::string& scene);
 
-/// Bodies at rest with the targets of an exercise snapped onto the first organ's skin.
-/// Throws naming the target if one is farther than 10 mm from any skin.
-TissueRig make_tissue(const LoadedScene& scene, std::span<const glm::dvec3> target_m,
+/// The surface of an organ at rest, for distances and hits.
+std::shared_ptr<const tissue::BoundaryTree> rest_surface(const tissue::BakedOrgan& organ);
+
+/// Distance fields of organ `index`'s anchors, in their order.
+std::vector<DistanceField> anchor_fields(const LoadedScene& scene, std::size_t index);
+
+/// Bodies at rest, in the order of scene.organ.
+std::vector<Body> make_bodies(const LoadedScene& scene, double step_s);
+
+/// A place that an exercise wants on the skin.
+struct TargetWish {
+    glm::dvec3 at_m{0.0};
+    std::string organ; // empty: the nearest
+};
+/// Snapped onto the nearest skin; nothing if there is none within kSnap_m.
+inline constexpr double kSnap_m = 10e-3;
+std::optional<EmbeddedTarget> snap_target(const LoadedScene& scene, std::span<const Body> bodies,
+                                          const TargetWish& wish);
+
+/// Bodies at rest with all targets snapped on. Throws naming the first target that is not near
+/// any skin.
+TissueRig make_tissue(const LoadedScene& scene, std::span<const TargetWish> targets,
                       const TissueConfig& config);
 
 /// Instruments without devices: geometry, limits, the zero of the counts.

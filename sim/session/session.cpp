@@ -1,5 +1,6 @@
 #include "sim/session/session.h"
 
+#include "sim/check/exercise_check.h"
 #include "sim/io/files.h"
 
 #include <cmath>
@@ -25,10 +26,10 @@ int period_of(int fem_hz) {
     return period;
 }
 
-std::vector<glm::dvec3> places(const tasks::TouchPoints& exercise) {
-    std::vector<glm::dvec3> out;
+std::vector<TargetWish> wishes(const tasks::TouchPoints& exercise) {
+    std::vector<TargetWish> out;
     for (const tasks::TouchTarget& target : exercise.target)
-        out.push_back(target.at_m);
+        out.push_back({target.at_m, target.organ});
     return out;
 }
 
@@ -52,7 +53,7 @@ std::unique_ptr<Session> build(const RunOptions& options, LoadedScene scene,
     session->scene = std::move(scene);
     TissueConfig config;
     config.step_s = period * kTick_s;
-    session->tissue = make_tissue(session->scene, places(session->exercise), config);
+    session->tissue = make_tissue(session->scene, wishes(session->exercise), config);
     session->rest_targets = rest_targets(session->tissue);
     session->haptics = make_haptics(session->scene.scene);
     session->haptics.coupling = options.coupling;
@@ -83,11 +84,27 @@ void give_hands(Session& session) {
     session.crew.hand.emplace<tasks::Hand>(skill, session.exercise, session.options.seed, start);
 }
 
+// An exercise that cannot be done here is bad input, and all of what is wrong is said at once.
+void refuse_impossible(const Session& session, const std::string& exercise_file) {
+    const ExerciseCheck check =
+        check_exercise(session.scene, session.tissue.bodies, make_solids(session.scene),
+                       session.exercise_text, exercise_file);
+    if (check.finding.empty())
+        return;
+    std::string message =
+        fmt::format("this exercise cannot be done in scene \"{}\"", session.scene.scene.id);
+    for (const Finding& finding : check.finding)
+        message += "\n" + text_of(finding);
+    throw std::invalid_argument(message);
+}
+
 } // namespace
 
 std::unique_ptr<Session> make_session(const RunOptions& options, bool with_hands) {
-    const auto path = find_asset("exercises", options.exercise);
-    auto session = build(options, load_scene(options.scene), read_text(path), path.string());
+    LoadedScene scene = load_scene(options.scene);
+    const auto path = find_exercise(scene.place, options.exercise);
+    auto session = build(options, std::move(scene), read_text(path), path.string());
+    refuse_impossible(*session, path.string());
     if (with_hands) {
         session->crew = make_crew(session->scene.scene, session->haptics);
         give_hands(*session);
@@ -95,7 +112,7 @@ std::unique_ptr<Session> make_session(const RunOptions& options, bool with_hands
     return session;
 }
 
-std::unique_ptr<Session> session_of(const tasks::AttemptRow& recorded) {
+std::unique_ptr<Session> session_of(const tasks::AttemptRow& recorded, const std::string& place) {
     RunOptions options;
     options.coupling = coupling_named(recorded.coupling);
     options.fem_hz = recorded.fem_hz;
@@ -103,13 +120,17 @@ std::unique_ptr<Session> session_of(const tasks::AttemptRow& recorded) {
     options.hands = recorded.hands;
     options.trainee = recorded.trainee;
     options.forces_on = recorded.forces_on;
-    LoadedScene scene = load_organs(parse_scene(recorded.scene_text, "scene in the logbook"));
+    Scene known = parse_scene(recorded.scene_text, "scene in the logbook");
+    ScenePlace from = place.empty() ? place_of_known(known.id) : find_scene(place);
+    LoadedScene scene = load_organs(std::move(known), std::move(from));
     if (scene.hash != recorded.scene_hash) {
         throw std::runtime_error("the scene's organs are not the ones that this attempt was made "
-                                 "with: bake them from the same recipes, or use rescore");
+                                 "with: name the scene's directory with --scene, bake its organs "
+                                 "from the same recipes, or use rescore");
     }
     return build(options, std::move(scene), recorded.exercise_text, "exercise in the logbook");
 }
+
 tasks::SessionRow session_row(const std::string& input_class) {
     utsname name{};
     uname(&name);

@@ -14,7 +14,7 @@ namespace sim {
 
 struct RunOptions {
     std::string exercise = "touch-points"; // name or path of an exercise file
-    std::string scene = "basic";           // name or path of a scene file
+    std::string scene = "basic";           // name, directory or path of a scene
     std::string hands = "expert";          // skill name or path of a script
     Coupling coupling = Coupling::anchored;
     int fem_hz = 100;
@@ -46,12 +46,15 @@ struct Session {
     int warped_steps = 0, inverted_steps = 0;
 };
 
-/// Loads and builds everything. Throws with file, line, key, value. `with_hands` false: no crew.
+/// Loads and builds everything, and checks that every target can be done by its role. Throws with
+/// file, line, key, value. `with_hands` false: no crew.
 std::unique_ptr<Session> make_session(const RunOptions& options, bool with_hands = true);
 
 /// The session that a recorded attempt was made in: same scene, exercise, rate and coupling, from
-/// the texts in its row. Throws if the organs are not the ones it was made with.
-std::unique_ptr<Session> session_of(const tasks::AttemptRow& recorded);
+/// the texts in its row. `place`: the scene's directory; empty: the shipped one of that id. Throws
+/// if the organs are not the ones it was made with. What could be done once is not checked again.
+std::unique_ptr<Session> session_of(const tasks::AttemptRow& recorded,
+                                    const std::string& place = {});
 
 /// This build and machine. `input_class`: haptic, force-free, mouse or scripted.
 tasks::SessionRow session_row(const std::string& input_class);

@@ -1,6 +1,5 @@
 #include "sim/study/indent.h"
 
-#include "haptics/contact/contact_rows.h"
 #include "haptics/contact/surface_walk.h"
 
 #include <algorithm>
@@ -11,24 +10,6 @@
 
 namespace sim {
 namespace {
-
-// Force of a normal press: compliance * P + law(P) = depth, by the contact solver itself.
-double force_at(const haptics::LocalLaw& law, double compliance_mpn, double depth_m,
-                double radius_m) {
-    haptics::ContactProblem problem;
-    problem.row[0] = {.active = true,
-                      .tip_m = {0.0, 0.0, radius_m - depth_m},
-                      .surface_free_m = {0.0, 0.0, 0.0},
-                      .normal = {0.0, 0.0, 1.0},
-                      .tip_radius_m = radius_m,
-                      .friction = 0.0,
-                      .law = law};
-    for (auto& line : problem.compliance)
-        line.fill(glm::dmat3{0.0});
-    problem.compliance[0][0] = glm::dmat3{compliance_mpn};
-    std::array<haptics::ContactMemory, haptics::kTools> memory{};
-    return haptics::solve_contact(problem, memory).force_n[0].z;
-}
 
 bool anchored_below(const Body& body, const tissue::Triangle& corners) {
     const tissue::ContactSurface& skin = body.organ->surface;
@@ -46,41 +27,28 @@ bool anchored_below(const Body& body, const tissue::Triangle& corners) {
 Indenter::Indenter(std::shared_ptr<const tissue::BakedOrgan> organ,
                    const tissue::Material& material, double tip_radius_m)
     : body_(make_body(std::move(organ), material, tip_radius_m,
-                      std::numeric_limits<double>::infinity())) {
+                      std::numeric_limits<double>::infinity())),
+      feel_(body_) {
     if (!body_.soft)
         throw std::invalid_argument("a rigid organ cannot be indented");
+    if (!feel_.firm())
+        throw std::invalid_argument("an organ that nothing holds has no static stiffness");
 }
 
 IndentPoint Indenter::press(const glm::dvec3& near_m, std::span<const double> depth_m) {
     const Foot foot = nearest_on(body_, near_m);
-    SoftBody& soft = *body_.soft;
-    const std::size_t n = static_cast<std::size_t>(soft.model.unknowns);
     IndentPoint out;
     out.place_m = place_on(body_, foot.at);
     out.normal = normal_on(body_, foot.at);
-    const std::span<double> block(soft.answer_m.data(), 3 * n);
-    std::fill(block.begin(), block.end(), 0.0);
-    for (int axis = 0; axis < 3; ++axis) {
-        glm::dvec3 direction{0.0};
-        direction[axis] = 1.0;
-        tissue::add_row(soft.model, body_.organ->surface, tissue_point(foot.at), direction, 1.0,
-                        block.subspan(axis * n, n));
-    }
-    soft.system.factor.solve(block, 3);
-    glm::dmat3 compliance;
-    for (int axis = 0; axis < 3; ++axis) {
-        compliance[axis] = tissue::row_value(soft.model, body_.organ->surface,
-                                             tissue_point(foot.at), block.subspan(axis * n, n));
-    }
+    const glm::dmat3 compliance = feel_.mesh_compliance(foot.at);
     out.mesh_mpn = glm::dot(out.normal, compliance * out.normal);
     out.tangential_mpn =
         0.5 * (compliance[0][0] + compliance[1][1] + compliance[2][2] - out.mesh_mpn);
     const haptics::LocalLaw law = law_on(body_, foot.at, 0.0);
     out.linear_mpn = law.normal_mpn;
     const double radius_m = body_.organ->tip_radius_max_m;
-    for (const double d : depth_m) {
-        out.force_n.push_back(force_at(law, out.mesh_mpn, d, radius_m));
-    }
+    for (const double d : depth_m)
+        out.force_n.push_back(press_force_n(law, out.mesh_mpn, d, radius_m));
     return out;
 }
 

@@ -3,7 +3,7 @@
 // that stiffness belongs to the tissue and not to the mesh: the same organ in two meshes.
 #pragma once
 
-#include "sim/bridge/body.h"
+#include "sim/check/rest_feel.h"
 
 #include <string>
 
@@ -17,9 +17,10 @@ struct IndentPoint {
     std::vector<double> force_n; // at each depth asked for
 };
 
-/// Statics of one organ: its tangent at rest, factored once.
+/// Statics of one organ: its tangent at rest, factored once. Stays where it was made.
 class Indenter {
   public:
+    Indenter(const Indenter&) = delete;
     Indenter(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Material& material,
              double tip_radius_m);
 
@@ -30,6 +31,7 @@ class Indenter {
 
   private:
     Body body_;
+    RestFeel feel_; // of body_
 };
 
 /// Seeded, area-weighted places on the skin that a footprint's radius of free tissue surrounds:

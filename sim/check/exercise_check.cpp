@@ -1,0 +1,232 @@
+#include "sim/check/exercise_check.h"
+
+#include "tasks/exercise/touch_points.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <limits>
+
+namespace sim {
+namespace {
+
+using glm::dvec3;
+using tasks::TomlTable;
+
+std::string mm(const dvec3& p) {
+    return fmt::format("({:.1f}, {:.1f}, {:.1f}) mm", 1e3 * p.x, 1e3 * p.y, 1e3 * p.z);
+}
+
+class Checker {
+  public:
+    Checker(const LoadedScene& scene, std::span<const Body> bodies, std::span<const Solid> solids,
+            const tasks::TouchPoints& exercise, const TomlTable& root)
+        : scene_(scene), bodies_(bodies), solids_(solids), exercise_(exercise), root_(root),
+          tables_(root.tables("target")), feel_(bodies.size()) {}
+
+    ExerciseCheck run() {
+        ExerciseCheck out;
+        out.id = exercise_.id;
+        for (std::size_t t = 0; t < exercise_.target.size(); ++t)
+            out.target.push_back(check(t, out));
+        out.finding = std::move(finding_);
+        return out;
+    }
+
+  private:
+    struct Place {
+        std::size_t body = 0;
+        haptics::SurfacePoint at;
+        dvec3 place_m{0.0}, normal{0.0};
+    };
+
+    void find(const char* kind, const TomlTable& table, const char* key, std::string accepted) {
+        finding_.push_back({kind, table.mention(key), std::move(accepted)});
+    }
+    const std::string& name(int body) const { return scene_.scene.organ[body].name; }
+
+    TargetCheck check(std::size_t t, const ExerciseCheck& before) {
+        const tasks::TouchTarget& target = exercise_.target[t];
+        TargetCheck out;
+        out.id = target.id;
+        out.role = target.role;
+        const auto snapped = snap_target(scene_, bodies_, {target.at_m, target.organ});
+        if (!snapped) {
+            find_no_skin(target, tables_[t]);
+            return out;
+        }
+        Place place{static_cast<std::size_t>(snapped->body), snapped->at, {}, {}};
+        place.place_m = place_on(bodies_[place.body], place.at);
+        place.normal = normal_on(bodies_[place.body], place.at);
+        out.organ = name(snapped->body);
+        out.place_m = place.place_m;
+        out.snap_m = glm::distance(target.at_m, place.place_m);
+        check_neighbours(out, before, tables_[t]);
+        check_reach(place, out, tables_[t]);
+        check_sight(place, tables_[t]);
+        check_band(place, out, tables_[t]);
+        return out;
+    }
+
+    void find_no_skin(const tasks::TouchTarget& target, const TomlTable& table) {
+        std::string names;
+        double nearest_m = std::numeric_limits<double>::max();
+        std::string nearest;
+        for (std::size_t b = 0; b < bodies_.size(); ++b) {
+            const std::string& organ = scene_.scene.organ[b].name;
+            names += (names.empty() ? "\"" : ", \"") + organ + "\"";
+            if (!target.organ.empty() && organ != target.organ)
+                continue;
+            const double distance_m = nearest_on(bodies_[b], target.at_m).distance_m;
+            if (distance_m < nearest_m) {
+                nearest_m = distance_m;
+                nearest = organ;
+            }
+        }
+        if (nearest.empty()) {
+            find("unknown_organ", table, "organ", "an organ of the scene: " + names);
+            return;
+        }
+        find("no_skin", table, "at_mm",
+             fmt::format("a place within {:.0f} mm of the skin of {}; it is {:.1f} mm from \"{}\"",
+                         1e3 * kSnap_m, target.organ.empty() ? "an organ" : "that organ",
+                         1e3 * nearest_m, nearest));
+    }
+
+    void check_neighbours(const TargetCheck& target, const ExerciseCheck& before,
+                          const TomlTable& table) {
+        for (const TargetCheck& other : before.target) {
+            if (other.organ.empty() || other.role != target.role)
+                continue;
+            const double distance_m = glm::distance(other.place_m, target.place_m);
+            if (distance_m < 2.0 * exercise_.radius_m) {
+                find("targets_too_near", table, "at_mm",
+                     fmt::format("a place two radii or more from target \"{}\" of the same role; "
+                                 "on the skin they are {:.1f} mm apart",
+                                 other.id, 1e3 * distance_m));
+            }
+        }
+    }
+
+    void check_reach(const Place& place, TargetCheck& out, const TomlTable& table) {
+        const SceneTool& tool = scene_.scene.tool[static_cast<std::size_t>(out.role)];
+        const dvec3 tip_m = place.place_m + tool.tip_radius_m * place.normal;
+        out.insertion_m = glm::distance(tip_m, tool.trocar.fulcrum_m);
+        const double least_m = tool.trocar.min_insertion_m;
+        const double most_m = tool.trocar.shaft_m - tool.trocar.min_outside_m;
+        const std::string role(tasks::role_name(out.role));
+        if (out.insertion_m < least_m || out.insertion_m > most_m) {
+            find("out_of_reach", table, "at_mm",
+                 fmt::format("a place that the {} tool reaches, {:.0f} to {:.0f} mm from its "
+                             "fulcrum; here its tip would be {:.0f} mm from it",
+                             role, 1e3 * least_m, 1e3 * most_m, 1e3 * out.insertion_m));
+            return;
+        }
+        const Obstacle in_way =
+            shaft_obstacle(solids_, tool.trocar, tip_m, static_cast<int>(place.body));
+        if (in_way.body >= 0) {
+            find(
+                "shaft_blocked", table, "at_mm",
+                fmt::format("a place that the {} tool reaches from its fulcrum in a straight line; "
+                            "its shaft would pass through \"{}\" at {}",
+                            role, name(in_way.body), mm(in_way.place_m)));
+        }
+    }
+
+    void check_sight(const Place& place, const TomlTable& table) {
+        const tasks::View& view = scene_.scene.view;
+        if (!tasks::in_view(view, place.place_m)) {
+            find("out_of_view", table, "at_mm",
+                 fmt::format("a place in the endoscope's picture, {:.0f} degrees high",
+                             view.field_of_view_rad * 57.29577951308232));
+            return;
+        }
+        const Obstacle hides = sight_obstacle(solids_, view.eye_m, place.place_m, place.normal);
+        if (hides.body >= 0) {
+            find("hidden", table, "at_mm",
+                 fmt::format("a place that the endoscope sees; \"{}\" hides it at {}",
+                             name(hides.body), mm(hides.place_m)));
+        }
+    }
+
+    RestFeel& feel(std::size_t body) {
+        if (!feel_[body])
+            feel_[body] = std::make_unique<RestFeel>(bodies_[body]);
+        return *feel_[body];
+    }
+
+    void check_band(const Place& place, TargetCheck& out, const TomlTable& table) {
+        const Body& body = bodies_[place.body];
+        const SceneTool& tool = scene_.scene.tool[static_cast<std::size_t>(out.role)];
+        RestFeel& rest = feel(place.body);
+        if (!rest.firm() || !is_held(*body.organ, body.material)) {
+            find("not_held", table, "at_mm",
+                 fmt::format("a place on an organ that something holds; nothing holds \"{}\", so "
+                             "no press meets resistance",
+                             out.organ));
+            return;
+        }
+        const TissueRig usual; // for its devices
+        const dvec3 tip_m = place.place_m + tool.tip_radius_m * place.normal;
+        const haptics::ShaftPose shaft =
+            haptics::shaft_pose(tool.trocar, haptics::handle_for_tip(tool.trocar, tip_m));
+        const haptics::LocalLaw law =
+            law_on(body, place.at, coupling_floor_mpn(shaft, usual.device_npm[0]));
+        const double mesh_mpn =
+            glm::dot(place.normal, rest.mesh_compliance(place.at) * place.normal);
+        out.deep_m = kDeepPress_m;
+        if (body.soft) {
+            const tissue::ContactSurface& skin = body.organ->surface;
+            const tissue::Triangle& corner = skin.triangles[place.at.triangle];
+            double thickness_m = 0.0;
+            for (int k = 0; k < 3; ++k)
+                thickness_m += place.at.weight[k] * skin.thickness_m[corner[k]];
+            out.deep_m = std::min(out.deep_m, kDeepShare * thickness_m);
+        }
+        out.shallow_n = press_force_n(law, mesh_mpn, kShallowPress_m, tool.tip_radius_m);
+        out.deep_n = press_force_n(law, mesh_mpn, out.deep_m, tool.tip_radius_m);
+        if (out.deep_n < exercise_.force_min_n) {
+            find_band("band_too_high", "force_min_n", exercise_.force_min_n,
+                      fmt::format("at most {:.3g}, which target \"{}\" on \"{}\" gives {:.1f} mm "
+                                  "deep, or firmer tissue",
+                                  out.deep_n, out.id, out.organ, 1e3 * out.deep_m));
+        }
+        if (out.shallow_n > exercise_.force_max_n) {
+            find_band("band_too_low", "force_max_n", exercise_.force_max_n,
+                      fmt::format("at least {:.3g}, which target \"{}\" on \"{}\" gives {:.1f} mm "
+                                  "deep, or softer tissue",
+                                  out.shallow_n, out.id, out.organ, 1e3 * kShallowPress_m));
+        }
+    }
+
+    // The limits of the band are the exercise's, and may be the built-in ones.
+    void find_band(const char* kind, const char* key, double value, std::string accepted) {
+        tasks::Mention at = root_.mention(key);
+        if (at.value.empty())
+            at.value = fmt::format("{} (built in)", value);
+        finding_.push_back({kind, std::move(at), std::move(accepted)});
+    }
+
+    const LoadedScene& scene_;
+    std::span<const Body> bodies_;
+    std::span<const Solid> solids_;
+    const tasks::TouchPoints& exercise_;
+    const TomlTable& root_;
+    std::vector<TomlTable> tables_;
+    std::vector<std::unique_ptr<RestFeel>> feel_; // beside bodies_, made when asked
+    std::vector<Finding> finding_;
+};
+
+} // namespace
+
+ExerciseCheck check_exercise(const LoadedScene& scene, std::span<const Body> bodies,
+                             std::span<const Solid> solids, const std::string& text,
+                             const std::string& file) {
+    const tasks::TouchPoints exercise = tasks::parse_touch_points(text, file);
+    const TomlTable root = TomlTable::parse(text, file);
+    ExerciseCheck out = Checker(scene, bodies, solids, exercise, root).run();
+    out.file = file;
+    return out;
+}
+
+} // namespace sim
