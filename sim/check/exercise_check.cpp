@@ -155,6 +155,14 @@ class Checker {
         return *feel_[body];
     }
 
+    // The way through the body along the inward normal.
+    double thickness_m(const Place& place) const {
+        constexpr double kBelowSkin_m = 0.2e-3, kFar_m = 1.0;
+        const auto hits = tissue::line_hits(solids_[place.body].skin, place.place_m, -place.normal,
+                                            kBelowSkin_m, kFar_m);
+        return !solids_[place.body].closed || hits.empty() ? kFar_m : hits.front().distance_m;
+    }
+
     void check_band(const Place& place, TargetCheck& out, const TomlTable& table) {
         const Body& body = bodies_[place.body];
         const SceneTool& tool = scene_.scene.tool[static_cast<std::size_t>(out.role)];
@@ -174,15 +182,7 @@ class Checker {
             law_on(body, place.at, coupling_floor_mpn(shaft, usual.device_npm[0]));
         const double mesh_mpn =
             glm::dot(place.normal, rest.mesh_compliance(place.at) * place.normal);
-        out.deep_m = kDeepPress_m;
-        if (body.soft) {
-            const tissue::ContactSurface& skin = body.organ->surface;
-            const tissue::Triangle& corner = skin.triangles[place.at.triangle];
-            double thickness_m = 0.0;
-            for (int k = 0; k < 3; ++k)
-                thickness_m += place.at.weight[k] * skin.thickness_m[corner[k]];
-            out.deep_m = std::min(out.deep_m, kDeepShare * thickness_m);
-        }
+        out.deep_m = std::min(kDeepPress_m, kDeepShare * thickness_m(place));
         out.shallow_n = press_force_n(law, mesh_mpn, kShallowPress_m, tool.tip_radius_m);
         out.deep_n = press_force_n(law, mesh_mpn, out.deep_m, tool.tip_radius_m);
         if (out.deep_n < exercise_.force_min_n) {

@@ -26,16 +26,24 @@ Solid make_solid(const tissue::BakedOrgan& organ) {
     } else {
         solid.skin = tissue::make_surface_tree(skin.rest_m, skin.triangles);
     }
-    solid.rim.assign(solid.skin.node_m.size(), 0);
+    solid.rim_vertex.assign(solid.skin.node_m.size(), 0);
+    solid.rim_edges.assign(solid.skin.triangle.size(), 0);
     for (std::size_t t = 0; !solid.closed && t < skin.triangles.size(); ++t) {
         for (std::size_t k = 0; k < 3; ++k) {
-            if (skin.neighbours[t][k] < 0)
-                solid.rim[skin.triangles[t][(k + 1) % 3]] =
-                    solid.rim[skin.triangles[t][(k + 2) % 3]] = 1;
+            if (skin.neighbours[t][k] >= 0)
+                continue;
+            solid.rim_edges[t] = static_cast<std::uint8_t>(solid.rim_edges[t] | 1u << k);
+            solid.rim_vertex[skin.triangles[t][(k + 1) % 3]] = 1;
+            solid.rim_vertex[skin.triangles[t][(k + 2) % 3]] = 1;
         }
     }
     solid.low_m = solid.skin.box[0].low;
     solid.high_m = solid.skin.box[0].high;
+    solid.sample_m = solid.skin.node_m;
+    for (const tissue::Tet& tet : organ.mesh.tets) {
+        const auto& x = organ.mesh.rest_m;
+        solid.sample_m.push_back(0.25 * (x[tet[0]] + x[tet[1]] + x[tet[2]] + x[tet[3]]));
+    }
     return solid;
 }
 
@@ -51,18 +59,24 @@ bool inside_closed(const Solid& solid, const dvec3& p) {
            }) >= 2;
 }
 
+// Beyond a rim the nearest point is on it, and neither side is meant.
 bool on_rim(const Solid& solid, const BoundaryPoint& at) {
-    constexpr double kCorner = 1e-9;
+    constexpr double kNone = 1e-9;
+    std::size_t corners = 0, with = 0, without = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-        if (at.weight[static_cast<int>(k)] > kCorner &&
-            !solid.rim[solid.skin.triangle[at.triangle][k]])
-            return false;
+        const bool counts = at.weight[static_cast<int>(k)] > kNone;
+        corners += counts;
+        (counts ? with : without) = k;
     }
-    return true;
+    if (corners == 3)
+        return false;
+    if (corners == 2)
+        return (solid.rim_edges[at.triangle] >> without & 1) != 0;
+    return solid.rim_vertex[solid.skin.triangle[at.triangle][with]] != 0;
 }
 
 void deepest(const Solid& of, const Solid& in, Overlap& worst) {
-    for (const dvec3& p : of.skin.node_m) {
+    for (const dvec3& p : of.sample_m) {
         const double depth_m = depth_in_m(in, p);
         if (depth_m > worst.depth_m)
             worst = {depth_m, p};
@@ -112,10 +126,10 @@ double depth_in_m(const Solid& solid, const dvec3& p) {
 
 Overlap overlap_of(const Solid& a, const Solid& b) {
     Overlap worst;
+    if (!a.closed && !b.closed)
+        return worst; // sheets have no inside
     deepest(a, b, worst);
-    // nothing is inside an open surface's own sheet
-    if (a.closed)
-        deepest(b, a, worst);
+    deepest(b, a, worst);
     return worst;
 }
 

@@ -10,9 +10,12 @@ namespace sim {
 
 struct Solid {
     tissue::BoundaryTree skin;
-    bool closed = true;            // false: scenery with an inner and an outer side, the wall
-    std::vector<std::uint8_t> rim; // per vertex: on the edge of an open surface
+    bool closed = true; // false: scenery with an inner and an outer side, the wall
+    // of an open surface: vertices on its rim, and per triangle which edges are (bit k: opposite
+    // corner k)
+    std::vector<std::uint8_t> rim_vertex, rim_edges;
     glm::dvec3 low_m{0.0}, high_m{0.0};
+    std::vector<glm::dvec3> sample_m; // vertices of the skin, middles of the tetrahedra
 };
 
 /// One for each organ. A soft organ whose skin is open is seen by the boundary of its tetrahedra.
@@ -21,8 +24,8 @@ std::vector<Solid> make_solids(const LoadedScene& scene);
 /// How far a place is inside a body, or behind an open surface; 0 outside.
 double depth_in_m(const Solid& solid, const glm::dvec3& place_m);
 
-/// The deepest that the vertices of `a` lie in `b` or those of `b` in `a`. Sampled at the vertices:
-/// what pokes through between them, a few millimetres apart, is not seen.
+/// The deepest that the samples of `a` lie in `b` or those of `b` in `a`: what pokes through
+/// between the vertices of a skin, a few millimetres apart, is not seen.
 struct Overlap {
     double depth_m = 0.0; // 0: none
     glm::dvec3 place_m{0.0};

@@ -31,9 +31,7 @@ std::optional<EmbeddedTarget> snap_target(const LoadedScene& loaded, std::span<c
     return best;
 }
 
-TissueRig make_tissue(const LoadedScene& loaded, std::span<const TargetWish> targets,
-                      const TissueConfig& config) {
-    TissueRig rig = make_tissue_rig(make_bodies(loaded, config.step_s), config);
+void embed_targets(const LoadedScene& loaded, std::span<const TargetWish> targets, TissueRig& rig) {
     for (std::size_t t = 0; t < targets.size(); ++t) {
         const glm::dvec3& at = targets[t].at_m;
         const auto snapped = snap_target(loaded, rig.bodies, targets[t]);
@@ -47,6 +45,12 @@ TissueRig make_tissue(const LoadedScene& loaded, std::span<const TargetWish> tar
         }
         rig.targets.push_back(*snapped);
     }
+}
+
+TissueRig make_tissue(const LoadedScene& loaded, std::span<const TargetWish> targets,
+                      const TissueConfig& config) {
+    TissueRig rig = make_tissue_rig(make_bodies(loaded, config.step_s), config);
+    embed_targets(loaded, targets, rig);
     return rig;
 }
 

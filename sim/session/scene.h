@@ -75,8 +75,10 @@ inline constexpr double kSnap_m = 10e-3;
 std::optional<EmbeddedTarget> snap_target(const LoadedScene& scene, std::span<const Body> bodies,
                                           const TargetWish& wish);
 
-/// Bodies at rest with all targets snapped on. Throws naming the first target that is not near
-/// any skin.
+/// Snaps all targets onto the rig's bodies. Throws naming the first that is not near any skin.
+void embed_targets(const LoadedScene& scene, std::span<const TargetWish> targets, TissueRig& rig);
+
+/// Bodies at rest with all targets embedded.
 TissueRig make_tissue(const LoadedScene& scene, std::span<const TargetWish> targets,
                       const TissueConfig& config);
 

@@ -4,6 +4,7 @@
 #include "sim/session/scene.h"
 
 #include "sim/io/files.h"
+#include "sim/session/rehold.h"
 
 #include <fmt/format.h>
 
@@ -112,10 +113,15 @@ LoadedScene load_organs(Scene scene, ScenePlace place, Mistakes* mistakes) {
         const SceneOrgan& organ = loaded.scene.organ[i];
         if (organ.anchor.empty() || loaded.organ[i]->rigid)
             continue;
-        tissue::BakedOrgan held = *loaded.organ[i];
-        held.anchored.assign(held.anchored.size(), 0);
-        held.bed = bed_of(held.mesh, anchor_fields(loaded, i), organ.hold_length_m);
-        loaded.organ[i] = std::make_shared<const tissue::BakedOrgan>(std::move(held));
+        try {
+            loaded.organ[i] = std::make_shared<const tissue::BakedOrgan>(
+                held_by(*loaded.organ[i], bed_of(loaded.organ[i]->mesh, anchor_fields(loaded, i),
+                                                 organ.hold_length_m)));
+        } catch (const std::invalid_argument& e) {
+            refuse_or_keep(tables[i], "file",
+                           fmt::format("an organ whose hold can be changed; {}", e.what()),
+                           mistakes);
+        }
     }
     return loaded;
 }

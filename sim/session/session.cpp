@@ -42,9 +42,24 @@ std::vector<tasks::Target> rest_targets(const TissueRig& rig) {
     return out;
 }
 
-// Everything that follows from options, scene and exercise.
+// An exercise that cannot be done here is bad input, and all of what is wrong is said at once.
+void refuse_impossible(const Session& session, const std::string& exercise_file) {
+    const ExerciseCheck check =
+        check_exercise(session.scene, session.tissue.bodies, make_solids(session.scene),
+                       session.exercise_text, exercise_file);
+    if (check.finding.empty())
+        return;
+    std::string message =
+        fmt::format("this exercise cannot be done in scene \"{}\"", session.scene.scene.id);
+    for (const Finding& finding : check.finding)
+        message += "\n" + text_of(finding);
+    throw std::invalid_argument(message);
+}
+
+// Everything that follows from options, scene and exercise. `check`: asks first if it can be done.
 std::unique_ptr<Session> build(const RunOptions& options, LoadedScene scene,
-                               const std::string& exercise_text, const std::string& exercise_file) {
+                               const std::string& exercise_text, const std::string& exercise_file,
+                               bool check) {
     auto session = std::make_unique<Session>();
     session->options = options;
     const int period = period_of(options.fem_hz);
@@ -53,7 +68,10 @@ std::unique_ptr<Session> build(const RunOptions& options, LoadedScene scene,
     session->scene = std::move(scene);
     TissueConfig config;
     config.step_s = period * kTick_s;
-    session->tissue = make_tissue(session->scene, wishes(session->exercise), config);
+    session->tissue = make_tissue(session->scene, {}, config);
+    if (check)
+        refuse_impossible(*session, exercise_file);
+    embed_targets(session->scene, wishes(session->exercise), session->tissue);
     session->rest_targets = rest_targets(session->tissue);
     session->haptics = make_haptics(session->scene.scene);
     session->haptics.coupling = options.coupling;
@@ -84,27 +102,12 @@ void give_hands(Session& session) {
     session.crew.hand.emplace<tasks::Hand>(skill, session.exercise, session.options.seed, start);
 }
 
-// An exercise that cannot be done here is bad input, and all of what is wrong is said at once.
-void refuse_impossible(const Session& session, const std::string& exercise_file) {
-    const ExerciseCheck check =
-        check_exercise(session.scene, session.tissue.bodies, make_solids(session.scene),
-                       session.exercise_text, exercise_file);
-    if (check.finding.empty())
-        return;
-    std::string message =
-        fmt::format("this exercise cannot be done in scene \"{}\"", session.scene.scene.id);
-    for (const Finding& finding : check.finding)
-        message += "\n" + text_of(finding);
-    throw std::invalid_argument(message);
-}
-
 } // namespace
 
 std::unique_ptr<Session> make_session(const RunOptions& options, bool with_hands) {
     LoadedScene scene = load_scene(options.scene);
     const auto path = find_exercise(scene.place, options.exercise);
-    auto session = build(options, std::move(scene), read_text(path), path.string());
-    refuse_impossible(*session, path.string());
+    auto session = build(options, std::move(scene), read_text(path), path.string(), true);
     if (with_hands) {
         session->crew = make_crew(session->scene.scene, session->haptics);
         give_hands(*session);
@@ -128,7 +131,8 @@ std::unique_ptr<Session> session_of(const tasks::AttemptRow& recorded, const std
                                  "with: name the scene's directory with --scene, bake its organs "
                                  "from the same recipes, or use rescore");
     }
-    return build(options, std::move(scene), recorded.exercise_text, "exercise in the logbook");
+    return build(options, std::move(scene), recorded.exercise_text, "exercise in the logbook",
+                 false);
 }
 
 tasks::SessionRow session_row(const std::string& input_class) {

@@ -1,0 +1,280 @@
+// tests/sim/scene_check_test.cpp
+// Everything that a scene lacks, or that an exercise asks in vain, is found: that and nothing else.
+#include "tests/sim/scene_fixture.h"
+
+#include <fmt/format.h>
+
+using namespace scene_tests;
+
+namespace {
+
+using Kinds = std::vector<std::string>;
+
+// The scene's only finding.
+sim::Finding only(const sim::SceneCheck& check) {
+    CHECK(check.mistakes.empty());
+    REQUIRE(kinds(check).size() == 1);
+    return check.finding[0];
+}
+
+} // namespace
+
+TEST_CASE("scene check: the bench as it is has nothing to find, nor have the shipped scenes") {
+    const Directory directory;
+    for (const std::string& scene :
+         {directory.path(), std::string("basic"), std::string("two_organs")}) {
+        CAPTURE(scene);
+        const sim::SceneCheck check = sim::check_scene(scene);
+        CHECK(check.mistakes.empty());
+        CHECK(kinds(check) == Kinds{});
+        REQUIRE(check.exercise.size() == 1);
+        CHECK(check.hash.size() == 64);
+    }
+}
+
+TEST_CASE("scene check: every mistake in a scene's text is said at once") {
+    const Directory directory;
+    std::string text = with(kScene, "young_kpa = 6.0", "young_kpa = \"soft\"");
+    text = with(text, "role = \"left\"", "role = \"middle\"");
+    text = with(text, "field_of_view_deg = 50", "field_of_view_deg = 500");
+    text = with(text, "title = \"A block\"\n", "titel = \"A block\"\n");
+    directory.write("scene.toml", text);
+    directory.write("exercises/bench.toml",
+                    with(kExercise, "force_max_n = 1.0", "force_max_n = 0"));
+    const std::string scene = (directory.folder / "scene.toml").string();
+    std::vector<std::string> said;
+    for (const tasks::BadInput& mistake : directory.check().mistakes)
+        said.emplace_back(mistake.what());
+    CHECK(said ==
+          std::vector<std::string>{
+              scene + ":2: titel = \"A block\": unknown key; accepted here: id, title, organ, "
+                      "tool, view",
+              scene + ":1: title is missing: text in quotes",
+              scene + ":7: young_kpa = \"soft\": a number from 0.1 to 1e+06",
+              scene + ":14: role = \"middle\": one of \"left\", \"right\", \"assist\"",
+              scene + ":13: tool = " + said[4].substr(said[4].find(" = ") + 3),
+              scene + ":32: field_of_view_deg = 500: a number from 20 to 100",
+              (directory.folder / "exercises/bench.toml").string() +
+                  ":5: force_max_n = 0: a number from 0.01 to 20"});
+    CHECK(said[4].ends_with("a table [[tool]] with role = \"left\"; the scene has none"));
+}
+
+TEST_CASE("scene check: files that are missing, damaged or outside are named with the key") {
+    const Directory directory;
+    std::filesystem::remove(directory.folder / "block.organ");
+    sim::SceneCheck check = directory.check();
+    REQUIRE(check.mistakes.size() == 1);
+    CHECK(check.mistakes[0].at.line == 6);
+    CHECK(check.mistakes[0].at.key == "file");
+    CHECK(check.mistakes[0].at.value == "\"block.organ\"");
+    CHECK(check.mistakes[0].accepted.find("No such file") != std::string::npos);
+
+    directory.write("block.organ", "not an organ");
+    check = directory.check();
+    REQUIRE(check.mistakes.size() == 1);
+    CHECK(check.mistakes[0].accepted.find("an organ made by bake") != std::string::npos);
+
+    for (const char* path : {"../block.organ", "/etc/passwd", "a/../../b", "a\\\\b"}) {
+        CAPTURE(path);
+        directory.write("scene.toml", with(kScene, "\"block.organ\"", fmt::format("\"{}\"", path)));
+        check = directory.check();
+        REQUIRE(check.mistakes.size() == 1);
+        CHECK(check.mistakes[0].at.line == 6);
+        CHECK(check.mistakes[0].accepted == "a path inside the scene's directory, without \"..\"");
+    }
+}
+
+TEST_CASE("scene check: a directory's missing organ is not taken from the build's") {
+    const Directory directory;
+    directory.write("scene.toml", with(kScene, "block.organ", "block_s12.organ"));
+    CHECK(directory.check().mistakes.size() == 1);
+    CHECK_THROWS_AS(sim::load_scene(directory.path()), tasks::BadInput);
+}
+
+TEST_CASE("scene check: anchors are one kind each, of organs that exist") {
+    const Directory directory;
+    const std::string box = "low_mm = [-1, -1, -1]\nhigh_mm = [81, 81, 10]\n";
+    const std::vector<std::array<std::string, 2>> cases{
+        {box + "radius_mm = 3\n", "only one of: low_mm and high_mm"},
+        {"\n", "one of: low_mm and high_mm"},
+        {"low_mm = [0, 0, 0]\nhigh_mm = [9, 9, 0]\n", "a place above low_mm in x, y and z"},
+        {"touching = \"wall\"\nwithin_mm = 3\n", "another organ of the scene; there is none"},
+        {"touching = \"block\"\nwithin_mm = 3\n", "another organ of the scene; there is none"},
+        {"touching = \"wall\"\n", "a number from 0.1 to 50"},
+        {"region = \"../up.txt\"\n", "a path inside the scene's directory"},
+        {"region = \"gone.txt\"\n", "a file of balls x y z r in the scene's directory"},
+        {"radios_mm = 3\n", "unknown key"}};
+    for (const auto& [anchor, accepted] : cases) {
+        CAPTURE(anchor);
+        directory.write("scene.toml", with(kScene, box, anchor));
+        const sim::SceneCheck check = directory.check();
+        REQUIRE(!check.mistakes.empty());
+        CHECK(check.mistakes[0].at.line >= 9);
+        CHECK(check.mistakes[0].at.line <= 12);
+        CHECK(std::string(check.mistakes[0].accepted).find(accepted) == 0);
+    }
+}
+
+TEST_CASE("scene check: two blocks that share 5 mm overlap by 5 mm") {
+    const Directory directory;
+    tissue::BakedOrgan above = block();
+    for (glm::dvec3& p : above.mesh.rest_m)
+        p.z += 35e-3;
+    for (glm::dvec3& p : above.surface.rest_m)
+        p.z += 35e-3;
+    directory.add("above.organ", above);
+    directory.write("scene.toml", std::string(kScene) +
+                                      "\n[[organ]]\nname = \"above\"\nfile = \"above.organ\"\n");
+    const sim::SceneCheck check = directory.check();
+    REQUIRE(!check.finding.empty());
+    CHECK(check.finding[0].kind == "overlap");
+    CHECK(check.finding[0].at.value == "\"above\"");
+    CHECK(check.finding[0].accepted.find("overlaps \"block\", deepest 5.0 mm") !=
+          std::string::npos);
+}
+
+TEST_CASE("scene check: an organ behind the rigid wall is found, one in front of it is not") {
+    const Directory directory;
+    directory.put(plate({-200, -200}, {300, 300}, 3.0, true)); // the block's lowest 3 mm
+    sim::Finding finding = only(directory.check());
+    CHECK(finding.kind == "overlap");
+    CHECK(finding.accepted.find("deepest 3.0 mm") != std::string::npos);
+    directory.put(plate({-200, -200}, {300, 300}, -1.0, true));
+    CHECK(kinds(directory.check()) == Kinds{});
+}
+
+TEST_CASE("scene check: a tool that starts in an organ or through one is found") {
+    const Directory directory;
+    directory.write("scene.toml", with(kScene, "[70, 40, 90]", "[70, 40, 30]"));
+    sim::Finding finding = only(directory.check());
+    CHECK(finding.kind == "start_inside");
+    CHECK(finding.at.value == "[70,40,30]");
+    directory.write("scene.toml", with(kScene, "[70, 40, 90]", "[70, 40, 42]")); // a 3 mm tip
+    CHECK(only(directory.check()).kind == "start_inside");
+    // over the right tool's way to its start, and no other's; the block is in front of it
+    directory.put(plate({85, 30}, {105, 50}, 120.0, false));
+    const sim::SceneCheck check = directory.check();
+    CHECK(kinds(check) == Kinds{"shaft_blocked", "shaft_blocked"});
+    CHECK(check.finding[0].at.key == "start_tip_mm");
+    CHECK(check.finding[1].at.key == "at_mm"); // and its target is behind the plate too
+}
+
+TEST_CASE("exercise check: a target too far from its fulcrum is found, alone") {
+    const Directory directory;
+    // 145 mm to the right tool's target; 130 - 30 mm of it can be inside
+    directory.write("scene.toml", with(kScene, "start_tip_mm = [70, 40, 90]",
+                                       "start_tip_mm = [70, 40, 90]\nshaft_mm = 130"));
+    const sim::Finding finding = only(directory.check());
+    CHECK(finding.kind == "out_of_reach");
+    CHECK(finding.at.line == 10);
+    CHECK(finding.at.value == "[55,25,40]");
+    CHECK(finding.accepted.find("20 to 100 mm from its fulcrum") != std::string::npos);
+    CHECK(finding.accepted.find("would be 135 mm from it") != std::string::npos);
+}
+
+TEST_CASE("exercise check: a target outside the picture, or behind something, is found, alone") {
+    const Directory directory;
+    // 180 mm above, 20 degrees high: half of it is 31.7 mm; 36 mm up is outside, 36 mm aside not
+    directory.write("scene.toml", with(kScene, "field_of_view_deg = 50", "field_of_view_deg = 20"));
+    directory.write("exercises/bench.toml", with(kExercise, "[40, 60, 40]", "[40, 76, 40]"));
+    CHECK(only(directory.check()).kind == "out_of_view");
+    directory.write("exercises/bench.toml", with(kExercise, "[55, 25, 40]", "[76, 40, 40]"));
+    CHECK(kinds(directory.check()) == Kinds{});
+
+    directory.write("exercises/bench.toml", kExercise);
+    directory.put(plate({37, 45}, {43, 53}, 150.0, false)); // on the line to the third target
+    const sim::Finding finding = only(directory.check());
+    CHECK(finding.kind == "hidden");
+    CHECK(finding.at.value == "[40,60,40]");
+    CHECK(finding.accepted.find("\"plate\" hides it") != std::string::npos);
+}
+
+TEST_CASE("exercise check: a shaft that would pass through another organ is found, alone") {
+    const Directory directory;
+    // the left tool comes to (25, 40, 43) from (-40, 40, 160): at height 80 it is at x = 4.4
+    const double x = -40.0 + 65.0 * (160.0 - 80.0) / (160.0 - 43.0);
+    directory.put(plate({x - 3, 37}, {x + 3, 43}, 80.0, false));
+    const sim::Finding finding = only(directory.check());
+    CHECK(finding.kind == "shaft_blocked");
+    CHECK(finding.at.value == "[25,40,40]");
+    // 2.5 mm is the shaft: beside it is free, and nearer is not
+    directory.put(plate({x - 3, 37 - 9}, {x + 3, 43 - 9}, 80.0, false));
+    CHECK(kinds(directory.check()) == Kinds{});
+    directory.put(plate({x - 3, 37 - 5}, {x + 3, 43 - 5}, 80.0, false));
+    CHECK(only(directory.check()).kind == "shaft_blocked");
+}
+
+TEST_CASE("exercise check: a target on the far side of its own organ is found") {
+    const Directory directory;
+    // from under the block's edge the tool would have to come through it
+    directory.write("scene.toml", with(with(kScene, "[120, 40, 160]", "[40, 200, 20]"),
+                                       "[70, 40, 90]", "[40, 120, 70]"));
+    const sim::Finding finding = only(directory.check());
+    CHECK(finding.kind == "shaft_blocked");
+    CHECK(finding.at.value == "[55,25,40]");
+    CHECK(finding.accepted.find("through \"block\"") != std::string::npos);
+}
+
+TEST_CASE("exercise check: a band that the tissue cannot give is found at every target, with what "
+          "it gives") {
+    const Directory directory;
+    std::string band = with(kExercise, "force_min_n = 0.1", "force_min_n = 9");
+    band = with(band, "force_max_n = 1.0", "force_max_n = 10\nforce_limit_n = 12");
+    directory.write("exercises/bench.toml", band);
+    sim::SceneCheck check = directory.check();
+    CHECK(kinds(check) == Kinds{"band_too_high", "band_too_high", "band_too_high"});
+    CHECK(check.finding[0].at.line == 4);
+    CHECK(check.finding[0].at.value == "9");
+    // just what it says it gives is accepted, a little more is not
+    const double gives_n = check.exercise[0].target[0].deep_n;
+    directory.write("exercises/bench.toml",
+                    with(band, "force_min_n = 9", fmt::format("force_min_n = {}", 0.9 * gives_n)));
+    CHECK(kinds(directory.check()).size() < 3);
+
+    // bone: what the coupling lets through, some 0.3 N at half a millimetre
+    directory.write("scene.toml", with(kScene, "young_kpa = 6.0", "young_kpa = 100000"));
+    directory.write("exercises/bench.toml",
+                    with(kExercise, "force_max_n = 1.0", "force_max_n = 0.11"));
+    CHECK(kinds(directory.check()) == Kinds{"band_too_low", "band_too_low", "band_too_low"});
+}
+
+TEST_CASE("exercise check: a target in the air or of an unknown organ is found, alone") {
+    const Directory directory;
+    directory.write("exercises/bench.toml", with(kExercise, "[55, 25, 40]", "[55, 25, 60]"));
+    sim::Finding finding = only(directory.check());
+    CHECK(finding.kind == "no_skin");
+    CHECK(finding.accepted ==
+          "a place within 10 mm of the skin of an organ; it is 20.0 mm from \"block\"");
+    directory.write("exercises/bench.toml",
+                    with(kExercise, "at_mm = [55, 25, 40]", "at_mm = [55, 25, 40]\norgan = \"x\""));
+    finding = only(directory.check());
+    CHECK(finding.kind == "unknown_organ");
+    CHECK(finding.at.key == "organ");
+    CHECK(finding.accepted == "an organ of the scene: \"block\"");
+}
+
+TEST_CASE("exercise check: two places of one role that snap onto one are found") {
+    const Directory directory;
+    directory.write("exercises/bench.toml",
+                    with(with(kExercise, "[40, 60, 40]", "[55, 25, 47]"), "assist", "right"));
+    const sim::Finding finding = only(directory.check());
+    CHECK(finding.kind == "targets_too_near");
+    CHECK(finding.at.value == "[55,25,47]");
+}
+
+TEST_CASE("exercise check: an attempt at what cannot be done is refused before it starts") {
+    const Directory directory;
+    directory.write("exercises/bench.toml", with(kExercise, "[55, 25, 40]", "[55, 25, 60]"));
+    sim::RunOptions options;
+    options.scene = directory.path();
+    options.exercise = "bench";
+    std::string message;
+    try {
+        sim::make_session(options);
+    } catch (const std::invalid_argument& e) {
+        message = e.what();
+    }
+    const std::string expected = (directory.folder / "exercises/bench.toml").string() +
+                                 ":10: at_mm = [55,25,60]: a place within 10 mm of the skin";
+    CHECK(message.find(expected) != std::string::npos);
+}
