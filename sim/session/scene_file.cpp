@@ -27,7 +27,11 @@ template <class Section> void section(Mistakes* mistakes, Section read) {
     try {
         read();
     } catch (const tasks::BadInput& mistake) {
-        mistakes->push_back(mistake);
+        const bool said = std::any_of(mistakes->begin(), mistakes->end(), [&](const auto& other) {
+            return std::string_view(other.what()) == mistake.what();
+        });
+        if (!said)
+            mistakes->push_back(mistake);
     }
 }
 

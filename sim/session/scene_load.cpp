@@ -43,6 +43,8 @@ std::shared_ptr<const tissue::BakedOrgan> load_organ(const std::filesystem::path
 
 void load_regions(SceneOrgan& organ, const ScenePlace& place, const TomlTable& t,
                   Mistakes* mistakes, std::string& digest) {
+    if (organ.anchor.empty())
+        return;
     const std::vector<TomlTable> tables = t.tables("anchor");
     for (std::size_t a = 0; a < organ.anchor.size() && a < tables.size(); ++a) {
         auto* region = std::get_if<AnchorRegion>(&organ.anchor[a]);

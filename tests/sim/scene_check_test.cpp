@@ -3,6 +3,7 @@
 #include "tests/sim/scene_fixture.h"
 
 #include <fmt/format.h>
+#include <random>
 
 using namespace scene_tests;
 
@@ -277,4 +278,38 @@ TEST_CASE("exercise check: an attempt at what cannot be done is refused before i
     const std::string expected = (directory.folder / "exercises/bench.toml").string() +
                                  ":10: at_mm = [55,25,60]: a place within 10 mm of the skin";
     CHECK(message.find(expected) != std::string::npos);
+}
+
+TEST_CASE("scene: any bytes are a scene or mistakes that are told, and nothing else") {
+    const Directory directory;
+    const std::string good = with(kScene, "young_kpa = 6.0", "young_kpa = 6.0\nhold_length_mm = 3");
+    std::mt19937 random(5);
+    int told = 0;
+    for (int round = 0; round < 3000; ++round) {
+        std::string text = good;
+        for (int k = 0; k < 1 + round % 4; ++k) {
+            const std::size_t at = random() % text.size();
+            switch (random() % 3) {
+            case 0:
+                text[at] = static_cast<char>(random());
+                break;
+            case 1:
+                text.erase(at, random() % 40);
+                break;
+            default:
+                text.insert(at, text.substr(random() % text.size(), random() % 40));
+            }
+        }
+        sim::Mistakes mistakes;
+        sim::Scene scene = sim::parse_scene(text, "s.toml", &mistakes);
+        if (mistakes.empty()) {
+            CHECK_NOTHROW(sim::parse_scene(text, "s.toml"));
+            continue;
+        }
+        ++told;
+        CHECK_THROWS_AS(sim::parse_scene(text, "s.toml"), tasks::BadInput);
+        if (!scene.organ.empty())
+            sim::load_organs(std::move(scene), sim::find_scene(directory.path()), &mistakes);
+    }
+    CHECK(told > 1000);
 }
