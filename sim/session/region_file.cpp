@@ -35,7 +35,7 @@ bool read_numbers(std::string_view line, std::array<double, 4>& out) {
     for (double& number : out) {
         line = trimmed(line);
         const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), number);
-        if (error != std::errc{} || !std::isfinite(number))
+        if (error != std::errc{})
             return false;
         line.remove_prefix(static_cast<std::size_t>(end - line.data()));
         if (!line.empty() && line.front() != ' ' && line.front() != '\t' && line.front() != '\r')
@@ -44,6 +44,7 @@ bool read_numbers(std::string_view line, std::array<double, 4>& out) {
     return trimmed(line).empty();
 }
 
+// False for what is not finite.
 bool in_range(const std::array<double, 4>& v) {
     return std::abs(v[0]) <= kMaxPlace_mm && std::abs(v[1]) <= kMaxPlace_mm &&
            std::abs(v[2]) <= kMaxPlace_mm && v[3] > 0.0 && v[3] <= kMaxRadius_mm;
