@@ -15,22 +15,23 @@ struct TraineeArguments {
     bool with_attempts = false, json = false;
 };
 
-std::string station_db() {
-    return (user_data_dir() / "station.db").string();
+/// The user's folder is only made when it is needed: other commands must work without a home.
+std::string db_of(const TraineeArguments& a) {
+    return a.db.empty() ? (user_data_dir() / "station.db").string() : a.db;
 }
 
 void list(const TraineeArguments& a) {
-    tasks::Logbook logbook(a.db);
+    tasks::Logbook logbook(db_of(a));
     const auto trainees = tasks::summarise(logbook);
     fmt::print("{}{}", a.json ? tasks::summary_json(trainees) : tasks::summary_text(trainees),
                a.json ? "\n" : "");
 }
 
 void remove(const TraineeArguments& a) {
-    tasks::Logbook logbook(a.db);
+    tasks::Logbook logbook(db_of(a));
     if (!logbook.delete_trainee(a.name, a.with_attempts)) {
         throw std::invalid_argument(
-            fmt::format("{}: no trainee with the name or id \"{}\"", a.db, a.name));
+            fmt::format("{}: no trainee with the name or id \"{}\"", db_of(a), a.name));
     }
     fmt::print("deleted {}{}\n", a.name,
                a.with_attempts ? " and all attempts" : "; attempts stay under the pseudonym");
@@ -40,7 +41,6 @@ void remove(const TraineeArguments& a) {
 
 void add_trainee(CLI::App& app, int&) {
     auto a = std::make_shared<TraineeArguments>();
-    a->db = station_db();
     CLI::App* c = app.add_subcommand("trainee", "Who trains at this station");
     c->require_subcommand(1);
     CLI::App* add = c->add_subcommand("add", "Add a trainee; prints the pseudonymous id");
@@ -52,10 +52,10 @@ void add_trainee(CLI::App& app, int&) {
     gone->add_option("id", a->name, "Id or name")->required();
     gone->add_flag("--with-attempts", a->with_attempts, "Delete the attempts too");
     for (CLI::App* sub : {add, show, gone}) {
-        sub->add_option("--log", a->db, "Logbook")->capture_default_str();
+        sub->add_option("--log", a->db, "Logbook; default: station.db in the user's data folder");
     }
     add->callback([a] {
-        tasks::Logbook logbook(a->db);
+        tasks::Logbook logbook(db_of(*a));
         fmt::print("{}\n", logbook.add_trainee(a->name));
     });
     show->callback([a] { list(*a); });

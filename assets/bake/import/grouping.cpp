@@ -19,6 +19,7 @@ namespace {
 constexpr double kCellPerEdge = 1.0 / 6.0; // of sampling
 constexpr std::size_t kMostCrossings = 20'000;
 constexpr std::size_t kMostChecked = 1'000'000; // triangles; larger bodies are coarsened first
+constexpr double kCoarseAway = 0.5;             // of the edge it is coarsened to
 constexpr double kOverlapShare = 1e-3;          // of the smaller diagonal; below it they touch
 
 double diagonal_m(const Surface& s) {
@@ -176,12 +177,14 @@ std::vector<GivenBody> sample_anew(const Surface& given, double edge_m, Notes& n
     return bodies;
 }
 
-/// Coarser by steps, so that no triangles get across each other that did not before, if possible.
+/// Coarser by steps, so that no thin part is lost and no triangles get across each other that were
+/// not before, if possible.
 Surface coarsen_cleanly(const Surface& given, double edge_m) {
     Surface coarse;
     for (const double share : {1.0, 0.6, 0.3}) {
         coarse = coarsen(given, share * edge_m);
-        if (find_crossings(coarse, 1).empty()) {
+        if (farthest(given, coarse).distance_m < kCoarseAway * edge_m &&
+            find_crossings(coarse, 1).empty()) {
             break;
         }
     }

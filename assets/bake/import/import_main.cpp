@@ -144,6 +144,32 @@ std::vector<std::byte> work(const Arguments& a, const ImportOptions& options,
     return {first, first + text.size()};
 }
 
+/// A picture may be asked for in the folder of the organ itself, which is not there yet.
+bool in_out(const fs::path& picture, const fs::path& out) {
+    const auto plain = [](const fs::path& p) {
+        const fs::path whole = fs::absolute(p).lexically_normal();
+        return whole.has_filename() ? whole : whole.parent_path();
+    };
+    return plain(picture).parent_path() == plain(out);
+}
+
+void require_picture_place(const Arguments& a) {
+    if (a.picture.empty()) {
+        return;
+    }
+    const fs::path folder = fs::absolute(a.picture).parent_path();
+    if (!in_out(a.picture, a.out) && !fs::is_directory(folder)) {
+        throw PathError(
+            fmt::format("--picture {}: {} is not a folder: accepted: a file in a folder "
+                        "that is there, or in --out",
+                        shown_path(a.picture), shown_path(folder)));
+    }
+    if (fs::path(a.picture).extension() != ".png") {
+        throw PathError(
+            fmt::format("--picture {}: accepted: a name that ends in .png", shown_path(a.picture)));
+    }
+}
+
 /// The picture goes where it was asked for, whole.
 void move_picture(const fs::path& from, const fs::path& to) {
     const fs::path part = to.string() + ".part";
@@ -158,17 +184,20 @@ void move_picture(const fs::path& from, const fs::path& to) {
         throw PathError(
             fmt::format("--picture {}: cannot be written: {}", shown_path(to), error.message()));
     }
-    fs::remove(from, error);
+    if (from != to) {
+        fs::remove(from, error);
+    }
 }
 
 void run(const Arguments& a) {
     const ImportOptions options = make_options(a);
-    Staging staging(a.out);
-    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    require_picture_place(a);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) { // before anything is made
         struct sigaction action {};
         action.sa_handler = note_signal;
         sigaction(number, &action, nullptr);
     }
+    Staging staging(a.out);
     const ChildAnswer answer = run_in_child(
         [&] {
             for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
@@ -185,7 +214,9 @@ void run(const Arguments& a) {
                                        : answer.reason);
     }
     if (!a.picture.empty()) {
-        move_picture(staging.folder() / "picture.png", a.picture);
+        const fs::path picture = fs::path(a.picture).filename();
+        move_picture(staging.folder() / "picture.png",
+                     in_out(a.picture, a.out) ? staging.folder() / picture : fs::path(a.picture));
     }
     staging.put_in_place();
     fmt::print("{}", std::string_view(reinterpret_cast<const char*>(answer.bytes.data()),

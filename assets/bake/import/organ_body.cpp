@@ -15,6 +15,7 @@ namespace bake {
 namespace {
 
 constexpr double kSkinLeast = 1.0 / 3.0, kSkinMost = 0.6; // skin edge, of the tetrahedra's
+constexpr double kSkinAway = 0.3;      // from the surface given, of the edge, that is aimed at
 constexpr double kSkinPoints = 3000.0; // before grading; each has its own mesh term, and is drawn
 constexpr double kMostVolumeChange = 0.01;
 constexpr double kMostAway = 0.5; // Hausdorff distance, of the edge
@@ -200,7 +201,8 @@ ImportedBody make_organ(const Body& body, const Surface& seen, const BodyPlan& p
 
     clock.begin(plan.name + ": skin");
     const RemeshOptions keep = edges_to_keep(body.surface, made.skin_m);
-    const Surface skin = make_skin(body.surface, made.skin_m, 1 + body.cavity_m.size(), keep);
+    const Surface skin = make_skin(body.surface, made.skin_m, kSkinAway * plan.edge_m,
+                                   1 + body.cavity_m.size(), keep);
     organ.surface.rest_m = skin.point_m;
     organ.surface.triangles = skin.triangles;
     organ.surface.neighbours = tissue::triangle_neighbours(skin.triangles);

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 bool import_writes(const fs::path& file) {
     const auto name = file.filename().string();
-    return name == "report.json" || name == "report.txt" || name == "picture.png" ||
+    return name == "report.json" || name == "report.txt" || file.extension() == ".png" ||
            file.extension() == ".organ";
 }
 

@@ -241,6 +241,8 @@ TEST_CASE("import program: wrong usage is refused and says what would be accepte
           std::string::npos);
     CHECK(run({"--unit", "mm", "--rigid", "--fine", "1,2,3"}).find("accepted: x,y,z,r") !=
           std::string::npos);
+    CHECK(run({"--unit", "mm", "--rigid", "--picture", "/nowhere/p.png"})
+              .find("--picture /nowhere") != std::string::npos);
     CHECK(run({"--unit", "mm", "--rigid", "--edge", "0"}).find("--edge") != std::string::npos);
 }
 
@@ -249,7 +251,11 @@ TEST_CASE("import program: an earlier import is replaced, a folder of something 
     const auto file = folder.write("a.stl", binary_stl(kGlobe));
     REQUIRE(import_file(folder, file, {"--rigid"}).exit_code() == 0);
     const auto first = slurp(folder.out() / "a.organ");
+    REQUIRE(import_file(folder, file, {"--rigid", "--picture", (folder.out() / "p.png").string()})
+                .exit_code() == 0);
+    CHECK(fs::exists(folder.out() / "p.png"));
     REQUIRE(import_file(folder, file, {"--rigid"}).exit_code() == 0);
+    CHECK_FALSE(fs::exists(folder.out() / "p.png"));
     CHECK(slurp(folder.out() / "a.organ") == first);
     std::ofstream(folder.out() / "letter.txt") << "dear";
     const auto ran = import_file(folder, file, {"--rigid"});
