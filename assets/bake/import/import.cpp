@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kNodes =
     800.0; // before grading, of all bodies together, where --edge says nothing
+constexpr std::size_t kMostNodes = 2000;
 constexpr double kFineShare = 0.5; // of the edge, at places that are asked for
 constexpr double kMm = 1e-3;
 
@@ -55,6 +56,17 @@ double choose_edge_m(const Pieces& pieces, const ImportOptions& options) {
         area += area_m2(s);
     }
     return edge_for_nodes(volume, area, kNodes);
+}
+
+/// Said, not refused: a thin body needs short edges.
+void judge_size(const ImportedBody& body, Notes& notes) {
+    const std::size_t nodes = body.organ.mesh.rest_m.size();
+    if (nodes > kMostNodes) {
+        notes.problems.push_back(fmt::format(
+            "{} has {} nodes, more than the {} that run in real time with room to spare; a larger "
+            "--edge gives fewer where the body is not thin",
+            body.organ.name, nodes, kMostNodes));
+    }
 }
 
 void keep_largest(std::vector<GivenBody>& bodies, Notes& notes) {
@@ -112,6 +124,7 @@ Imported import_surface(std::span<const std::byte> bytes, const ImportOptions& a
                             .hash = input_hash(bytes, options)};
         result.bodies.push_back(
             make_organ(bodies[i].body, bodies[i].seen, plan, options, result.notes, clock));
+        judge_size(result.bodies.back(), result.notes);
     }
     clock.end();
     result.phases = clock.phases();
