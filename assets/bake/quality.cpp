@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <set>
 
 namespace bake {
 namespace {
@@ -59,6 +60,22 @@ double smallest_around(const tissue::TetMesh& mesh, const std::vector<std::uint3
     return smallest;
 }
 
+double mean_edge_m(const tissue::TetMesh& mesh) {
+    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (const auto& t : mesh.tets) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            for (std::size_t j = i + 1; j < 4; ++j) {
+                edges.insert(std::minmax(t[i], t[j]));
+            }
+        }
+    }
+    double sum_m = 0.0;
+    for (const auto& [a, b] : edges) {
+        sum_m += glm::length(mesh.rest_m[a] - mesh.rest_m[b]);
+    }
+    return edges.empty() ? 0.0 : sum_m / static_cast<double>(edges.size());
+}
+
 } // namespace
 
 std::array<double, 6> dihedrals_rad(const std::array<glm::dvec3, 4>& c) {
@@ -86,6 +103,7 @@ TetQuality tet_quality(const tissue::TetMesh& mesh) {
         q.worst_aspect = std::max(q.worst_aspect, a);
         q.mean_aspect += a / static_cast<double>(mesh.tets.size());
     }
+    q.mean_edge_m = mean_edge_m(mesh);
     return q;
 }
 

@@ -11,6 +11,7 @@ struct TetQuality {
     double worst_dihedral_deg = 0.0; // smallest; a regular tetrahedron has 70.53
     double largest_dihedral_deg = 0.0;
     double worst_aspect = 0.0, mean_aspect = 0.0; // longest edge / smallest height, regular = 1
+    double mean_edge_m = 0.0;
 };
 TetQuality tet_quality(const tissue::TetMesh& mesh);
 

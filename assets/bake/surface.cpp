@@ -143,6 +143,11 @@ double area_m2(const Surface& s) {
     return 0.5 * twice;
 }
 
+double mean_edge_m(const Surface& surface) {
+    const double each_m2 = area_m2(surface) / static_cast<double>(surface.triangles.size());
+    return std::sqrt(each_m2 * 4.0 / std::sqrt(3.0));
+}
+
 double volume_m3(const Surface& s) {
     double six = 0.0; // Gauss: the tetrahedra from the origin to each triangle
     for (const auto& t : s.triangles) {

@@ -60,6 +60,9 @@ Surface make_surface(const HalfEdgeMesh& mesh);
 double area_m2(const Surface& surface);
 double volume_m3(const Surface& surface);
 
+/// Edge of equilateral triangles of the same area and number.
+double mean_edge_m(const Surface& surface);
+
 /// Area-weighted unit normal of every vertex.
 std::vector<glm::dvec3> vertex_normals(const Surface& surface);
 

@@ -43,6 +43,15 @@ void check_anchors(const LoadedScene& scene, std::size_t index, const TomlTable&
     }
 }
 
+double mean_edge_m(const tissue::ContactSurface& skin) {
+    double sum_m = 0.0;
+    for (const tissue::Triangle& t : skin.triangles) {
+        for (int k = 0; k < 3; ++k)
+            sum_m += glm::distance(skin.rest_m[t[k]], skin.rest_m[t[(k + 1) % 3]]);
+    }
+    return sum_m / (3.0 * static_cast<double>(skin.triangles.size()));
+}
+
 void check_organs(const LoadedScene& scene, std::span<const Solid> solids,
                   const std::vector<TomlTable>& tables, SceneCheck& out) {
     for (std::size_t i = 0; i < scene.organ.size(); ++i) {
@@ -57,7 +66,9 @@ void check_organs(const LoadedScene& scene, std::span<const Solid> solids,
         out.organ.push_back(organ);
         for (std::size_t j = 0; j < i; ++j) {
             const Overlap overlap = overlap_of(solids[i], solids[j]);
-            if (overlap.depth_m <= kOverlap_m)
+            const double edge_m =
+                std::max(mean_edge_m(body.surface), mean_edge_m(scene.organ[j]->surface));
+            if (overlap.depth_m <= std::max(kLeastOverlap_m, kOverlapShare * edge_m))
                 continue;
             out.finding.push_back(
                 {"overlap", tables[i].mention("name"),

@@ -27,9 +27,11 @@ struct SceneCheck {
     std::vector<Finding> finding; // of scene and exercises
 };
 
-/// More than this is an overlap: skins are triangles of some 4 mm, which cut across curved tissue
-/// by 0.1 mm.
-inline constexpr double kOverlap_m = 0.5e-3;
+/// More than this is an overlap: organs that touch, as in a body, each have a skin of triangles,
+/// and remeshing moves either by some tenths of their edges. A share of the longer mean edge of the
+/// two.
+inline constexpr double kOverlapShare = 0.25;
+inline constexpr double kLeastOverlap_m = 0.5e-3;
 
 /// `exercise`: a name or file; empty: all that exercise_names lists. Throws std::runtime_error if
 /// there is no such scene or exercise.

@@ -15,6 +15,7 @@ constexpr double kArc = 0.15; // height of a route over its straight line: swing
 constexpr double kUsualMove_m = 9.5e-3; // median movement; end points of shorter ones spread less
 constexpr double kFeelShare = 0.6;      // touch is quicker than sight
 constexpr double kBump_n = 0.06;        // felt on the way: something is there
+constexpr double kBackOff_m = 4e-3;     // from what a lift has met
 constexpr double kLeash_m = 12e-3;      // goal ahead of the tip: blocked, do not pull harder
 constexpr double kDepthSeen = 0.5;      // share of the depth error that a second look still leaves
 constexpr double kApproachShare = 0.3;  // of the speed, going down
@@ -24,6 +25,12 @@ constexpr double kNotice_s = 0.4;       // pressing well and nothing happens: so
 constexpr double kWanted = 0.3;         // where in the force band people press: gently
 constexpr double kPursuit_s = 0.3;      // smooth pursuit of a target that moves
 constexpr int kMaxCorrections = 4;
+
+/// Where what is touched pushes the tip; zero in the air.
+glm::dvec3 push_of(const ToolObservation& tool) {
+    const double force_n = glm::length(tool.force_n);
+    return force_n > 0.0 ? tool.force_n / force_n : glm::dvec3{0.0};
+}
 
 int ticks(double seconds) {
     return static_cast<int>(std::lround(seconds / kTick_s));
@@ -153,11 +160,19 @@ void Hand::follow_move(const HandSight& sight) {
         move_ = on;
     goal_m_[t] = place_m(move_);
     const bool lifting = phase_ == Phase::lift;
+    const bool felt = perceived(kFeelShare * skill_.reaction_s).force_n[t] > kBump_n;
+    if (lifting && !felt && lift_ == Lift::pressing)
+        lift_ = Lift::free;
+    if (lifting && felt && lift_ == Lift::free) { // a wall above: high enough
+        lift_to(tool.tip_m + kBackOff_m * push_of(tool));
+        lift_ = Lift::blocked;
+        return;
+    }
     const bool stuck = phase_ticks_ * kTick_s > move_.duration_s + kGiveUp_s;
-    if (stuck || (!lifting && perceived(kFeelShare * skill_.reaction_s).force_n[t] > kBump_n)) {
+    if (stuck || (!lifting && felt)) {
         clearance_m_ = std::min(clearance_m_ + kMoreRoom_m, kMostRoom_m);
-        const double force_n = glm::length(tool.force_n);
-        const glm::dvec3 away = force_n > 0.0 ? tool.force_n / force_n + 0.5 * normal_ : normal_;
+        const glm::dvec3 push = push_of(tool);
+        const glm::dvec3 away = push != glm::dvec3{0.0} ? push + 0.5 * normal_ : normal_;
         // The way it came in is always free: back along the shaft when lifting did not help.
         const bool back = stuck || glm::length(away) < 0.1;
         lift_to(tool.tip_m + kRest_m * (back ? -tool.shaft : glm::normalize(away)));
@@ -241,6 +256,7 @@ void Hand::keep_pressing(const HandSight& sight) {
 void Hand::lift_to(const glm::dvec3& to_m) {
     move_ = plan_move(goal_m_[static_cast<std::size_t>(tool_)], to_m, skill_.speed_mps);
     phase_ = Phase::lift;
+    lift_ = Lift::pressing;
     phase_ticks_ = 0;
 }
 

@@ -58,6 +58,7 @@ class Hand {
 
   private:
     enum class Phase { wait, travel, look, press, lift, finished };
+    enum class Lift { pressing, free, blocked }; // still on the tissue; off it; met something
     struct Percept {
         std::array<double, kTools> force_n{};
         int next_target = 0;
@@ -86,6 +87,7 @@ class Hand {
     std::size_t at_ = 0;
 
     Phase phase_ = Phase::wait;
+    Lift lift_ = Lift::pressing;
     int wait_ticks_ = 0, phase_ticks_ = 0;
     int tool_ = 0, target_ = -1;
     bool mistaken_ = false;    // this try is a lapse

@@ -1,36 +1,10 @@
 // tests/sim/scene_command_test.cpp
 // `trocar scene check` and `trocar run` as a script sees them: exit codes, and one JSON object.
+#include "tests/sim/command_fixture.h"
 #include "tests/sim/scene_fixture.h"
 
-#include <array>
-#include <cstdio>
-#include <nlohmann/json.hpp>
-#include <sys/wait.h>
-
+using namespace command_tests;
 using namespace scene_tests;
-
-namespace {
-
-struct Answer {
-    int exit_code = -1;
-    std::string text; // both streams
-};
-
-Answer trocar(const std::string& arguments) {
-    const std::string command = std::string(TROCAR_BINARY) + " " + arguments + " 2>&1";
-    FILE* pipe = popen(command.c_str(), "r");
-    REQUIRE(pipe != nullptr);
-    Answer out;
-    std::array<char, 4096> buffer{};
-    while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
-        out.text.append(buffer.data(), n);
-    const int status = pclose(pipe);
-    REQUIRE(WIFEXITED(status));
-    out.exit_code = WEXITSTATUS(status);
-    return out;
-}
-
-} // namespace
 
 TEST_CASE(
     "scene check: exit 0 for a usable scene, 1 for one with findings, 2 for an unreadable one") {

@@ -70,9 +70,10 @@ Boundary try_boundary(const Surface& skin, const SizeAt& size, const BoundaryOpt
     now.crossings = crossings.size();
     now.problem = describe(crossings, o.edge_m, notes);
     now.distance_m = hausdorff(skin, now.surface).distance_m;
-    if (now.distance_m > o.farthest_m) {
-        add_far_places(skin, now.surface, o.farthest_m, places);
-        add_far_places(now.surface, skin, o.farthest_m, places);
+    const double most_m = o.farthest * std::min(o.edge_m, mean_edge_m(now.surface));
+    if (now.distance_m > most_m) {
+        add_far_places(skin, now.surface, most_m, places);
+        add_far_places(now.surface, skin, most_m, places);
         now.problem += now.problem.empty()
                            ? fmt::format("{} from the surface given", notes.length(now.distance_m))
                            : "";

@@ -11,8 +11,8 @@ namespace bake {
 
 struct BoundaryOptions {
     double edge_m = 0.0;
-    double volume_m3 = 0.0;  // to hold
-    double farthest_m = 0.0; // from the skin, both ways
+    double volume_m3 = 0.0; // to hold
+    double farthest = 0.0;  // from the skin, both ways; of edge_m, or of the mean edge if shorter
     RemeshOptions keep;
     std::vector<FineSpot> fine; // asked for
 };

@@ -26,7 +26,7 @@ struct ImportOptions {
     tissue::Material material; // of tissue; not looked at if rigid
     bool rigid = false;
     bool largest = false;       // only the largest body
-    double edge_mm = 0.0;       // 0: from the body, for about 1000 nodes
+    double edge_mm = 0.0;       // 0: from the body, for about 500 nodes
     std::vector<FineSpot> fine; // in millimetres, whatever the unit; half the edge within radius
     double time_limit_s = 60.0; // of each attempt of TetGen
     std::function<void(const std::string&)> tell;

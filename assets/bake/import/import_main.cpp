@@ -230,9 +230,8 @@ void declare(CLI::App& app, Arguments& a) {
         ->check(CLI::IsMember({"mm", "cm", "m"}));
     app.add_option("--material", a.material, "Tissue, by its name in organs/materials.toml");
     app.add_flag("--rigid", a.rigid, "Scenery: no tetrahedra, no material");
-    app.add_option(
-           "--edge", a.edge_mm,
-           "Edge of the tetrahedra, mm; default: from volume and area, for about 1000 nodes")
+    app.add_option("--edge", a.edge_mm,
+                   "Edge of the tetrahedra, mm; default: from volume and area, for about 500 nodes")
         ->check(CLI::Range(0.5, 100.0));
     app.add_option("--fine", a.fine, "x,y,z,r in mm: finer within r of a place; may be repeated")
         ->allow_extra_args(false);

@@ -58,6 +58,7 @@ Json body_json(const ImportedBody& b, bool with_times) {
         return j;
     }
     j["edge_mm"] = 1e3 * b.edge_m;
+    j["mean_edge_mm"] = 1e3 * b.quality.mean_edge_m;
     j["nodes"] = b.organ.mesh.rest_m.size();
     j["tets"] = b.organ.mesh.tets.size();
     j["boundary_hausdorff_m"] = b.boundary_distance_m;
@@ -139,10 +140,11 @@ std::string import_text(const Imported& imported, const ImportOptions& options) 
         if (b.organ.rigid) {
             continue;
         }
-        text += fmt::format("  {} nodes, {} tetrahedra of {:.1f} mm, their boundary at most {:.2f} "
-                            "mm from the surface given\n",
-                            b.organ.mesh.rest_m.size(), b.organ.mesh.tets.size(), 1e3 * b.edge_m,
-                            1e3 * b.boundary_distance_m);
+        text += fmt::format(
+            "  {} nodes, {} tetrahedra of {:.1f} mm (mean {:.1f}), their boundary at most {:.2f} "
+            "mm from the surface given\n",
+            b.organ.mesh.rest_m.size(), b.organ.mesh.tets.size(), 1e3 * b.edge_m,
+            1e3 * b.quality.mean_edge_m, 1e3 * b.boundary_distance_m);
         text += fmt::format("  dihedral angles {:.1f} to {:.1f} degrees, worst aspect {:.1f}, mean "
                             "{:.1f}\n",
                             b.quality.worst_dihedral_deg, b.quality.largest_dihedral_deg,

@@ -114,7 +114,7 @@ double worst_deg(const tissue::TetMesh& mesh) {
 /// First order, as often as it takes; taken back by half while it makes bad tetrahedra.
 void hold_volume(tissue::TetMesh& mesh, const std::vector<tissue::Triangle>& boundary,
                  const ImproveOptions& o) {
-    const double worst = std::min(worst_deg(mesh), o.boundary_deg);
+    const double worst = std::min(worst_deg(mesh), o.hold_deg);
     for (int round = 0; round < 3; ++round) {
         const Surface s{mesh.rest_m, boundary};
         const auto normal = vertex_normals(s);

@@ -20,7 +20,7 @@ constexpr double kSkinPoints = 3000.0; // before grading; each has its own mesh 
 constexpr double kMostVolumeChange = 0.01;
 constexpr double kMostAway = 0.5; // Hausdorff distance, of the edge
 constexpr double kAway = 0.4;     // of the boundary from the skin, of the edge, that is aimed at
-constexpr double kReach = 0.25;   // of boundary nodes that are moved
+constexpr double kReach = 0.25;   // of boundary nodes that are moved, of the edge
 constexpr double kAskedDihedralDeg = 12.0; // of TetGen
 constexpr double kMostNodesShare = 1.6, kMostGrowth = 1.4;
 constexpr int kImproveSweeps = 6;
@@ -33,11 +33,16 @@ struct Solid {
     double away_m = 0.0; // Hausdorff distance of the boundary from the surface given
 };
 
+/// Half the edge that was aimed at; where thin parts made edges shorter, half of what they are.
+double most_away_m(const Solid& s, double edge_m) {
+    return kMostAway * std::min(edge_m, s.quality.mean_edge_m);
+}
+
 /// What an imported organ must be; how far the worst of the three is off, 1: just good.
 double shortfall(const Solid& s, double given_m3, double edge_m) {
     return std::max({kLeastDihedralDeg / std::max(s.quality.worst_dihedral_deg, 1e-3),
                      std::abs(s.volume_m3 / given_m3 - 1.0) / kMostVolumeChange,
-                     s.away_m / (kMostAway * edge_m)});
+                     s.away_m / most_away_m(s, edge_m)});
 }
 
 struct Shape {
@@ -65,7 +70,8 @@ std::optional<Solid> solid_of(const Surface& boundary, const Shape& shape, doubl
     }
     improve_inner_nodes(*answer.mesh, kImproveSweeps);
     improve_nodes(*answer.mesh, shape.nearest,
-                  {.reach_m = kReach * edge_m, .volume_m3 = shape.body.volume_m3});
+                  {.reach_m = kReach * std::min(edge_m, mean_edge_m(boundary)),
+                   .volume_m3 = shape.body.volume_m3});
     Solid solid{.mesh = std::move(*answer.mesh), .boundary = {}, .quality = {}};
     solid.boundary = {solid.mesh.rest_m, tissue::boundary_triangles(solid.mesh)};
     solid.quality = tet_quality(solid.mesh);
@@ -110,7 +116,7 @@ Solid make_solid(const Shape& shape, const BodyPlan& plan, const ImportOptions& 
             make_boundary(shape.skin, shape_size(shape.skin, edge_m, shape.keep),
                           {.edge_m = edge_m,
                            .volume_m3 = shape.body.volume_m3,
-                           .farthest_m = kAway * edge_m,
+                           .farthest = kAway,
                            .keep = shape.keep,
                            .fine = options.fine},
                           notes);
@@ -147,7 +153,7 @@ Solid make_solid(const Shape& shape, const BodyPlan& plan, const ImportOptions& 
         plan.name, made.attempts.size(), best.quality.worst_dihedral_deg,
         100.0 * (best.volume_m3 / shape.body.volume_m3 - 1.0), notes.length(best.away_m),
         notes.place(hausdorff(shape.seen, best.boundary).at_m), kLeastDihedralDeg,
-        100.0 * kMostVolumeChange, notes.length(kMostAway * made.edge_m)));
+        100.0 * kMostVolumeChange, notes.length(most_away_m(best, made.edge_m))));
 }
 
 /// The edge at which even triangles have kSkinPoints points, sqrt(3)/2 h^2 each, within limits.
@@ -191,8 +197,8 @@ ImportedBody make_organ(const Body& body, const Surface& seen, const BodyPlan& p
     ImportedBody made;
     made.given = body.surface;
     made.given_m3 = body.volume_m3;
-    made.edge_m = plan.edge_m;
     made.skin_m = skin_edge_m(area_m2(body.surface), plan.edge_m);
+    made.edge_m = options.rigid ? made.skin_m : plan.edge_m;
     tissue::BakedOrgan& organ = made.organ;
     organ.name = plan.name;
     organ.rigid = options.rigid;
@@ -201,8 +207,9 @@ ImportedBody make_organ(const Body& body, const Surface& seen, const BodyPlan& p
 
     clock.begin(plan.name + ": skin");
     const RemeshOptions keep = edges_to_keep(body.surface, made.skin_m);
-    const Surface skin = make_skin(body.surface, made.skin_m, kSkinAway * plan.edge_m,
-                                   1 + body.cavity_m.size(), keep);
+    const Surface skin =
+        make_skin(body.surface, made.skin_m, (options.rigid ? kAway : kSkinAway) * made.edge_m,
+                  1 + body.cavity_m.size(), keep);
     organ.surface.rest_m = skin.point_m;
     organ.surface.triangles = skin.triangles;
     organ.surface.neighbours = tissue::triangle_neighbours(skin.triangles);

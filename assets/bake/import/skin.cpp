@@ -17,11 +17,6 @@ constexpr double kLoss = 0.2;   // that coarsening may cost, of the skin's edge
 constexpr double kFiner = 0.65; // of the edge, where it keeps away
 constexpr int kTries = 5;
 
-double mean_edge_m(const Surface& s) {
-    const double each_m2 = area_m2(s) / static_cast<double>(s.triangles.size());
-    return std::sqrt(each_m2 * 4.0 / std::sqrt(3.0)); // of equilateral triangles
-}
-
 /// With fewer triangles if it has far more than the skin needs and keeps its thin parts.
 Surface lighter(const Surface& given, double skin_m) {
     for (const double share : {1.0, 0.5}) {
