@@ -1,8 +1,7 @@
 // tests/fuzz/surface_fuzz.h
 // libFuzzer on a reader of surface files (clang only): refusing is fine; a crash, a leak, more
 // memory than the bytes pay for, or a corner without a point is a finding. One program for each
-// format, stl_fuzz, obj_fuzz, ply_fuzz, off_fuzz:
-//   mkdir corpus && ply_fuzz -max_len=65536 -max_total_time=1800 -rss_limit_mb=1024 corpus
+// format, built and run by tests/fuzz/run.
 #pragma once
 
 #include "assets/bake/import/read_surface.h"

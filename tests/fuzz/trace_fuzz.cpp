@@ -2,7 +2,7 @@
 // libFuzzer on the trace decoder (clang only): the bytes as a chunk, and the bytes as the payload
 // of a chunk, so that the fuzzer need not guess a checksum. Refusing is fine; a crash, a leak or a
 // chunk that does not survive another round is a finding.
-//   trace_fuzz -max_len=4096 -max_total_time=60 -rss_limit_mb=512
+// Built and run by tests/fuzz/run.
 #include "tasks/logbook/trace.h"
 
 #include <cstdlib>
