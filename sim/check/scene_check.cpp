@@ -1,7 +1,7 @@
 #include "sim/check/scene_check.h"
 
 #include "sim/io/files.h"
-#include "tasks/exercise/touch_points.h"
+#include "tasks/exercise/exercise.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -68,7 +68,8 @@ void check_organs(const LoadedScene& scene, std::span<const Solid> solids,
             const Overlap overlap = overlap_of(solids[i], solids[j]);
             const double edge_m =
                 std::max(mean_edge_m(body.surface), mean_edge_m(scene.organ[j]->surface));
-            if (overlap.depth_m <= std::max(kLeastOverlap_m, kOverlapShare * edge_m))
+            if (overlap.depth_m <=
+                std::clamp(kOverlapShare * edge_m, kLeastOverlap_m, kMostOverlap_m))
                 continue;
             out.finding.push_back(
                 {"overlap", tables[i].mention("name"),
@@ -121,7 +122,7 @@ std::vector<ExerciseText> read_exercises(const ScenePlace& place, const std::str
         const std::filesystem::path path = find_exercise(place, name);
         ExerciseText exercise{path.string(), read_text(path)};
         try {
-            tasks::parse_touch_points(exercise.text, exercise.file);
+            tasks::parse_exercise(exercise.text, exercise.file);
             out.push_back(std::move(exercise));
         } catch (const tasks::BadInput& mistake) {
             mistakes.push_back(mistake);

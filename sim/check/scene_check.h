@@ -31,7 +31,7 @@ struct SceneCheck {
 /// and remeshing moves either by some tenths of their edges. A share of the longer mean edge of the
 /// two.
 inline constexpr double kOverlapShare = 0.25;
-inline constexpr double kLeastOverlap_m = 0.5e-3;
+inline constexpr double kLeastOverlap_m = 0.5e-3, kMostOverlap_m = 2e-3; // bounds of the share
 
 /// `exercise`: a name or file; empty: all that exercise_names lists. Throws std::runtime_error if
 /// there is no such scene or exercise.
