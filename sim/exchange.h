@@ -32,7 +32,7 @@
 #include "haptics/device/trocar.h"
 #include "sim/loop/newest_buffer.h"
 #include "sim/loop/spsc_ring.h"
-#include "tasks/exercise/touch_points.h"
+#include "tasks/exercise/progress.h"
 #include "tasks/logbook/trace.h"
 
 #include <vector>

@@ -1,6 +1,6 @@
 #include "sim/check/exercise_check.h"
 
-#include "tasks/exercise/touch_points.h"
+#include "tasks/exercise/exercise.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -20,9 +20,9 @@ std::string mm(const dvec3& p) {
 class Checker {
   public:
     Checker(const LoadedScene& scene, std::span<const Body> bodies, std::span<const Solid> solids,
-            const tasks::TouchPoints& exercise, const TomlTable& root)
+            const tasks::Exercise& exercise, const TomlTable& root)
         : scene_(scene), bodies_(bodies), solids_(solids), exercise_(exercise), root_(root),
-          tables_(root.tables("target")), feel_(bodies.size()) {}
+          tables_(root.tables(tasks::table_of_targets(exercise.kind))), feel_(bodies.size()) {}
 
     ExerciseCheck run() {
         ExerciseCheck out;
@@ -46,7 +46,7 @@ class Checker {
     const std::string& name(int body) const { return scene_.scene.organ[body].name; }
 
     TargetCheck check(std::size_t t, const ExerciseCheck& before) {
-        const tasks::TouchTarget& target = exercise_.target[t];
+        const tasks::ExerciseTarget& target = exercise_.target[t];
         TargetCheck out;
         out.id = target.id;
         out.role = target.role;
@@ -68,7 +68,7 @@ class Checker {
         return out;
     }
 
-    void find_no_skin(const tasks::TouchTarget& target, const TomlTable& table) {
+    void find_no_skin(const tasks::ExerciseTarget& target, const TomlTable& table) {
         std::string names;
         double nearest_m = std::numeric_limits<double>::max();
         std::string nearest;
@@ -96,7 +96,8 @@ class Checker {
     void check_neighbours(const TargetCheck& target, const ExerciseCheck& before,
                           const TomlTable& table) {
         for (const TargetCheck& other : before.target) {
-            if (other.organ.empty() || other.role != target.role)
+            if (other.organ.empty() || other.role != target.role ||
+                exercise_.kind != tasks::ExerciseKind::touch_points)
                 continue;
             const double distance_m = glm::distance(other.place_m, target.place_m);
             if (distance_m < 2.0 * exercise_.radius_m) {
@@ -210,7 +211,7 @@ class Checker {
     const LoadedScene& scene_;
     std::span<const Body> bodies_;
     std::span<const Solid> solids_;
-    const tasks::TouchPoints& exercise_;
+    const tasks::Exercise& exercise_;
     const TomlTable& root_;
     std::vector<TomlTable> tables_;
     std::vector<std::unique_ptr<RestFeel>> feel_; // beside bodies_, made when asked
@@ -222,7 +223,7 @@ class Checker {
 ExerciseCheck check_exercise(const LoadedScene& scene, std::span<const Body> bodies,
                              std::span<const Solid> solids, const std::string& text,
                              const std::string& file) {
-    const tasks::TouchPoints exercise = tasks::parse_touch_points(text, file);
+    const tasks::Exercise exercise = tasks::parse_exercise(text, file);
     const TomlTable root = TomlTable::parse(text, file);
     ExerciseCheck out = Checker(scene, bodies, solids, exercise, root).run();
     out.file = file;

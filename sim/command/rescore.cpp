@@ -19,8 +19,8 @@ struct Scores {
 
 Scores rescore_attempt(tasks::Logbook& logbook, const tasks::AttemptRow& row) {
     const Scene scene = parse_scene(row.scene_text, "scene in the logbook");
-    const tasks::TouchPoints exercise =
-        tasks::parse_touch_points(row.exercise_text, "exercise in the logbook");
+    const tasks::Exercise exercise =
+        tasks::parse_exercise(row.exercise_text, "exercise in the logbook");
     Attempt attempt(scene, exercise, std::vector<tasks::Target>(exercise.target.size()), row,
                     nullptr);
     for (const auto& bytes : logbook.chunks(row.id)) {

@@ -34,7 +34,7 @@ class Trainer {
         }
         for (const std::string& name : names_) {
             const auto path = find_exercise(place, name);
-            exercises_.push_back(tasks::parse_touch_points(read_text(path), path.string()));
+            exercises_.push_back(tasks::parse_exercise(read_text(path), path.string()));
             screens_.menu.exercises.push_back(
                 {.title = exercises_.back().title,
                  .hands = "left, right, assist",
@@ -94,15 +94,18 @@ class Trainer {
 
     void show_card(int index) {
         chosen_ = std::clamp(index, 0, static_cast<int>(exercises_.size()) - 1);
-        const tasks::TouchPoints& e = exercises_[chosen_];
+        const tasks::Exercise& e = exercises_[chosen_];
         screens_.screen = view::Screen::card;
         screens_.card = {
             .title = e.title,
             .text = e.card,
-            .limits = {fmt::format("Force {:.1f} to {:.1f} N, error above {:.1f} N", e.force_min_n,
-                                   e.force_max_n, e.force_limit_n),
-                       fmt::format("Hold {:.1f} s within {:.0f} mm", e.hold_s, 1e3 * e.radius_m),
-                       fmt::format("Time limit {:.0f} s", e.time_limit_s)}};
+            .limits = {
+                fmt::format("Force {:.1f} to {:.1f} N, error above {:.1f} N", e.force_min_n,
+                            e.force_max_n, e.force_limit_n),
+                e.kind == tasks::ExerciseKind::follow_path
+                    ? fmt::format("Stay within {:.0f} mm of the path", 1e3 * e.radius_m)
+                    : fmt::format("Hold {:.1f} s within {:.0f} mm", e.hold_s, 1e3 * e.radius_m),
+                fmt::format("Time limit {:.0f} s", e.time_limit_s)}};
     }
 
     // One attempt, by the person or as the expert's demonstration, with its own threads.
@@ -187,7 +190,7 @@ class Trainer {
     view::Screens screens_;
     view::ViewFrame idle_;
     std::vector<std::string> names_, trainee_ids_;
-    std::vector<tasks::TouchPoints> exercises_;
+    std::vector<tasks::Exercise> exercises_;
     int chosen_ = 0, next_surface_id_ = 1, shots_ = 0;
     bool quit_ = false;
 };

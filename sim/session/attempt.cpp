@@ -1,5 +1,7 @@
 #include "sim/session/attempt.h"
 
+#include "tasks/score/path_metrics.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,13 +11,13 @@ namespace {
 constexpr std::size_t kChunkTicks = 1000;
 constexpr std::size_t kStepBins = 4096; // millinewtons
 
-tasks::ScoreContext context_of(const Scene& scene, const tasks::TouchPoints& exercise,
+tasks::ScoreContext context_of(const Scene& scene, const tasks::Exercise& exercise,
                                const tasks::AttemptRow& row) {
     tasks::ScoreContext context;
     context.force_limit_n = exercise.force_limit_n;
     for (int i = 0; i < kTools; ++i)
         context.role[i] = scene.tool[i].role;
-    for (const tasks::TouchTarget& target : exercise.target) {
+    for (const tasks::ExerciseTarget& target : exercise.target) {
         context.ideal_path_m.push_back(target.at_m);
         context.ideal_role.push_back(target.role);
     }
@@ -39,7 +41,7 @@ double share(const std::vector<std::uint32_t>& histogram, double part) {
 
 } // namespace
 
-Attempt::Attempt(const Scene& scene, const tasks::TouchPoints& exercise,
+Attempt::Attempt(const Scene& scene, const tasks::Exercise& exercise,
                  std::vector<tasks::Target> rest_targets, tasks::AttemptRow row,
                  tasks::Logbook* logbook)
     : exercise_(exercise), rest_targets_(std::move(rest_targets)), geometry_(make_haptics(scene)),
@@ -115,6 +117,8 @@ Attempt::Outcome Attempt::finish(const tasks::RigReport& rig) {
     Outcome out;
     flush_chunk();
     out.metrics = tasks::finish(score_, progress_, context_);
+    const auto of_path = tasks::path_metrics(progress_, exercise_, row_.forces_on);
+    out.metrics.insert(out.metrics.end(), of_path.begin(), of_path.end());
     for (const tasks::Event& event : progress_.events)
         hash_.add(event);
     for (const tasks::Metric& metric : out.metrics)

@@ -16,7 +16,7 @@ class Attempt {
   public:
     /// `row`: the attempt's setup, as it is hashed and logged. `logbook` may be null; then nothing
     /// is kept. `row.id` must be set if there is one.
-    Attempt(const Scene& scene, const tasks::TouchPoints& exercise,
+    Attempt(const Scene& scene, const tasks::Exercise& exercise,
             std::vector<tasks::Target> rest_targets, tasks::AttemptRow row,
             tasks::Logbook* logbook);
 
@@ -26,7 +26,7 @@ class Attempt {
     /// Pause, abandon, faults: events that do not follow from the ticks.
     void add_event(const tasks::Event& event);
 
-    const tasks::TouchProgress& progress() const { return progress_; }
+    const tasks::Progress& progress() const { return progress_; }
     const tasks::Observation& seen() const { return seen_; }
 
     struct Outcome {
@@ -41,13 +41,13 @@ class Attempt {
     void flush_chunk();
     void take_ideal_path(const tasks::StepTrace& first);
 
-    tasks::TouchPoints exercise_;
+    tasks::Exercise exercise_;
     std::vector<tasks::Target> rest_targets_;
     HapticRig geometry_;
     tasks::View view_;
     tasks::AttemptRow row_;
     tasks::Logbook* logbook_;
-    tasks::TouchProgress progress_;
+    tasks::Progress progress_;
     tasks::ScoreState score_;
     tasks::ScoreContext context_;
     tasks::LogHash hash_;

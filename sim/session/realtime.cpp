@@ -110,11 +110,11 @@ struct Recorder {
     }
 
     void publish_progress() {
-        const tasks::TouchProgress& p = attempt.progress();
+        const tasks::Progress& p = attempt.progress();
         ProgressNow now;
         now.tick = last_tick;
         now.next_target = p.next;
-        now.hold_share = p.held_ticks * kTick_s / session.exercise.hold_s;
+        now.hold_share = tasks::share_at_next(p, session.exercise);
         now.complete = p.complete;
         for (const tasks::Event& event : p.events)
             now.errors += tasks::is_error(event.kind);

@@ -26,9 +26,9 @@ int period_of(int fem_hz) {
     return period;
 }
 
-std::vector<TargetWish> wishes(const tasks::TouchPoints& exercise) {
+std::vector<TargetWish> wishes(const tasks::Exercise& exercise) {
     std::vector<TargetWish> out;
-    for (const tasks::TouchTarget& target : exercise.target)
+    for (const tasks::ExerciseTarget& target : exercise.target)
         out.push_back({target.at_m, target.organ});
     return out;
 }
@@ -64,7 +64,7 @@ std::unique_ptr<Session> build(const RunOptions& options, LoadedScene scene,
     session->options = options;
     const int period = period_of(options.fem_hz);
     session->exercise_text = exercise_text;
-    session->exercise = tasks::parse_touch_points(exercise_text, exercise_file);
+    session->exercise = tasks::parse_exercise(exercise_text, exercise_file);
     session->scene = std::move(scene);
     TissueConfig config;
     config.step_s = period * kTick_s;

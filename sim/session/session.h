@@ -28,7 +28,7 @@ struct RunOptions {
 struct Session {
     RunOptions options;
     LoadedScene scene;
-    tasks::TouchPoints exercise;
+    tasks::Exercise exercise;
     std::string exercise_text;
     std::vector<tasks::Target> rest_targets;
     TargetPlaces rest_target_um{};

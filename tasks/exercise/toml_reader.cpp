@@ -218,7 +218,10 @@ Mention TomlTable::mention(std::string_view key) const {
     if (!has(key))
         return {node_->file, node_->line, name, {}};
     const toml::value& value = node_->value.at(name);
-    return {node_->file, value.location().line(), name, shown(value)};
+    const bool tables =
+        value.is_array() && !value.as_array().empty() && value.as_array().front().is_table();
+    return {node_->file, value.location().line(), name,
+            tables ? std::to_string(value.as_array().size()) + " tables" : shown(value)};
 }
 
 void TomlTable::refuse(std::string_view key, const std::string& accepted) const {

@@ -24,6 +24,9 @@ constexpr double kGiveUp_s = 3.0;       // no push, and no blocked movement, goe
 constexpr double kNotice_s = 0.4;       // pressing well and nothing happens: something is wrong
 constexpr double kWanted = 0.3;         // where in the force band people press: gently
 constexpr double kPursuit_s = 0.3;      // smooth pursuit of a target that moves
+constexpr double kTraceShare = 0.3;     // of the speed, drawing along a line
+constexpr double kCalm = 4.0;           // of its scatter: so wide a path takes no care
+constexpr double kPursuitDelays = 2.5;  // of the eye: quicker corrections would swing
 constexpr int kMaxCorrections = 4;
 
 /// Where what is touched pushes the tip; zero in the air.
@@ -38,7 +41,7 @@ int ticks(double seconds) {
 
 } // namespace
 
-Hand::Hand(const HandSkill& skill, const TouchPoints& exercise, std::uint64_t seed,
+Hand::Hand(const HandSkill& skill, const Exercise& exercise, std::uint64_t seed,
            const std::array<glm::dvec3, kTools>& start_tip_m)
     : skill_(skill), exercise_(exercise), random_(seed), goal_m_(start_tip_m),
       past_(static_cast<std::size_t>(ticks(skill.reaction_s)) + 1), clearance_m_(kHover_m) {
@@ -69,8 +72,10 @@ void Hand::decide(const HandSight& sight) {
         phase_ = Phase::finished;
         return;
     }
-    const bool fresh = seen.next_target != target_;
-    target_ = seen.next_target;
+    const bool path = exercise_.kind == ExerciseKind::follow_path;
+    const int wanted = path ? std::max(0, seen.next_target - 1) : seen.next_target;
+    const bool fresh = wanted != target_;
+    target_ = wanted;
     const auto k = static_cast<std::size_t>(target_);
     tool_ = static_cast<int>(exercise_.target[k].role);
     normal_ = sight.now.target[k].normal;
@@ -225,6 +230,10 @@ void Hand::begin_descent(const HandSight& sight) {
         sight.now.tool[t].tip_m - sight.now.target[static_cast<std::size_t>(target_)].position_m;
     held_ticks_ = 0;
     phase_ = Phase::press;
+    if (exercise_.kind == ExerciseKind::follow_path && !mistaken_) {
+        trace_ = begin_trace(sight.now, target_);
+        phase_ = Phase::trace;
+    }
 }
 
 // Down to contact and on to the wanted force; up when the task has moved on or nothing comes of it.
@@ -247,10 +256,37 @@ void Hand::keep_pressing(const HandSight& sight) {
         held_ticks_ * kTick_s > exercise_.hold_s + skill_.reaction_s + kNotice_s ||
         press_.contact_ticks * kTick_s > kGiveUp_s ||
         (press_.contact_ticks == 0 && press_.advanced_m > clearance_m_ + kNotFound_m);
-    if (advanced || in_vain) {
-        const double height_m = kRest_m + press_.advanced_m - clearance_m_;
-        lift_to(goal_m_[t] + std::max(height_m, kHover_m) * normal_);
-    }
+    if (advanced || in_vain)
+        lift_off(t, normal_);
+}
+
+// Along the path while the force is right; up when it is done, lost, or does not count.
+void Hand::keep_tracing(const HandSight& sight) {
+    const auto t = static_cast<std::size_t>(tool_);
+    advance(press_, glm::length(sight.now.tool[t].force_n));
+    const Percept& seen = perceived(skill_.reaction_s);
+    const bool in_band =
+        press_.felt_n >= exercise_.force_min_n && press_.felt_n <= exercise_.force_max_n;
+    // Steering law (Accot & Zhai 1997): the narrower the path for a hand's own scatter, the slower.
+    const double ease = std::min(1.0, exercise_.radius_m / (kCalm * skill_.aim_m + 1e-9));
+    const double way_m = in_band ? kTraceShare * ease * skill_.speed_mps * kTick_s : 0.0;
+    const double pursuit_s = std::max(kPursuit_s, kPursuitDelays * skill_.reaction_s);
+    advance(trace_, way_m, skill_.aim_m, seen.aside_m, pursuit_s, random_);
+    const glm::dvec3 normal = normal_at(trace_);
+    goal_m_[t] = place_m(trace_) + (clearance_m_ - press_.advanced_m) * normal + trace_.wander_m +
+                 trace_.corrected_m;
+
+    const bool behind = seen.next_target + 1 < static_cast<int>(trace_.u);
+    const bool not_found =
+        press_.contact_ticks == 0 && press_.advanced_m > clearance_m_ + kNotFound_m;
+    const bool ended = trace_.end_ticks * kTick_s > skill_.reaction_s + kNotice_s;
+    if (seen.done || behind || not_found || ended)
+        lift_off(t, normal);
+}
+
+void Hand::lift_off(std::size_t t, const glm::dvec3& normal) {
+    const double height_m = kRest_m + press_.advanced_m - clearance_m_;
+    lift_to(goal_m_[t] + std::max(height_m, kHover_m) * normal);
 }
 
 void Hand::lift_to(const glm::dvec3& to_m) {
@@ -262,7 +298,11 @@ void Hand::lift_to(const glm::dvec3& to_m) {
 
 HandGoals Hand::tick(const HandSight& sight) {
     at_ = (at_ + 1) % past_.size();
-    past_[at_] = {{}, sight.next_target, sight.done};
+    past_[at_] = {{}, {}, sight.next_target, sight.done};
+    if (phase_ == Phase::trace) {
+        past_[at_].aside_m =
+            aside_m(trace_, sight.now, sight.now.tool[static_cast<std::size_t>(tool_)]);
+    }
     for (std::size_t t = 0; t < kTools; ++t)
         past_[at_].force_n[t] = glm::length(sight.now.tool[t].force_n);
     ++phase_ticks_;
@@ -281,6 +321,9 @@ HandGoals Hand::tick(const HandSight& sight) {
         break;
     case Phase::press:
         keep_pressing(sight);
+        break;
+    case Phase::trace:
+        keep_tracing(sight);
         break;
     case Phase::finished:
         break;

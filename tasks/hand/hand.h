@@ -6,8 +6,9 @@
 // Called by sim once a tick, in the thread that owns the tick; not inside the 1 kHz budget.
 #pragma once
 
-#include "tasks/exercise/touch_points.h"
+#include "tasks/exercise/exercise.h"
 #include "tasks/hand/motion.h"
+#include "tasks/hand/trace.h"
 
 #include <string>
 #include <vector>
@@ -48,19 +49,21 @@ struct HandGoals {
 
 /// One person with three tools, one of them active at a time. Deterministic in (skill, seed, what
 /// it saw). A plan for one target: travel in strides to a point above it, look and correct, go
-/// down until it is felt, press, hold until the task moves on, lift. What takes too long, meets
+/// down until it is felt, press, hold until the task moves on, lift. A path is taken up in the same
+/// way where it was left, and drawn along as long as the force is right. What takes too long, meets
 /// something on the way or is not found ends in a lift and another try.
 class Hand {
   public:
-    Hand(const HandSkill& skill, const TouchPoints& exercise, std::uint64_t seed,
+    Hand(const HandSkill& skill, const Exercise& exercise, std::uint64_t seed,
          const std::array<glm::dvec3, kTools>& start_tip_m);
     HandGoals tick(const HandSight& sight);
 
   private:
-    enum class Phase { wait, travel, look, press, lift, finished };
+    enum class Phase { wait, travel, look, press, trace, lift, finished };
     enum class Lift { pressing, free, blocked }; // still on the tissue; off it; met something
     struct Percept {
         std::array<double, kTools> force_n{};
+        glm::dvec3 aside_m{0.0}; // of the path
         int next_target = 0;
         bool done = false;
     };
@@ -76,10 +79,12 @@ class Hand {
     void look(const HandSight& sight);
     void begin_descent(const HandSight& sight);
     void keep_pressing(const HandSight& sight);
+    void keep_tracing(const HandSight& sight);
+    void lift_off(std::size_t t, const glm::dvec3& normal);
     void lift_to(const glm::dvec3& to_m);
 
     HandSkill skill_;
-    TouchPoints exercise_;
+    Exercise exercise_;
     Random random_;
     std::array<Tremor, kTools> tremor_;
     std::array<glm::dvec3, kTools> goal_m_;
@@ -98,6 +103,7 @@ class Hand {
     int strides_ = 1, stride_ = 0, corrections_ = 0, held_ticks_ = 0;
     MinimumJerk move_;
     Press press_;
+    Trace trace_;
 };
 
 } // namespace tasks

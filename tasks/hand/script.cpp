@@ -24,7 +24,7 @@ std::size_t index_of(const ScriptStep& step) {
 
 } // namespace
 
-ScriptHand::ScriptHand(Script script, const TouchPoints& exercise,
+ScriptHand::ScriptHand(Script script, const Exercise& exercise,
                        const std::array<glm::dvec3, kTools>& start_tip_m)
     : script_(std::move(script)), exercise_(exercise), goal_m_(start_tip_m) {
     for (const ScriptStep& step : script_.step) {

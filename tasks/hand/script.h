@@ -56,7 +56,7 @@ ExpectationResult check(const Expectation& expected, std::span<const Metric> met
 class ScriptHand {
   public:
     /// Throws std::invalid_argument for a target that the exercise does not have.
-    ScriptHand(Script script, const TouchPoints& exercise,
+    ScriptHand(Script script, const Exercise& exercise,
                const std::array<glm::dvec3, kTools>& start_tip_m);
     HandGoals tick(const HandSight& sight);
 
@@ -70,7 +70,7 @@ class ScriptHand {
     bool touch(const HandSight& sight, const ScriptStep& step);
 
     Script script_;
-    TouchPoints exercise_;
+    Exercise exercise_;
     std::vector<int> target_of_step_; // index into the exercise; -1: none
     std::size_t now_ = 0;             // step
     Stage stage_ = Stage::begin;

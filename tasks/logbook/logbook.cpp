@@ -212,7 +212,7 @@ std::vector<Event> Logbook::events(std::int64_t attempt) {
                      kAction);
     return read_all(impl_->main, select.arg(attempt), kAction, [](const Statement& row) {
         const std::int64_t kind = row.integer(1);
-        if (kind < 0 || kind > static_cast<std::int64_t>(EventKind::rig_fault))
+        if (kind < 0 || kind > static_cast<std::int64_t>(kLastEventKind))
             throw std::invalid_argument(fmt::format("event kind {} is not known", kind));
         return Event{row.integer(0),
                      static_cast<EventKind>(kind),

@@ -5,7 +5,7 @@
 // anything. Not for the 1 kHz thread. Throws LogbookError; nothing is half-written.
 #pragma once
 
-#include "tasks/exercise/touch_points.h"
+#include "tasks/exercise/progress.h"
 #include "tasks/logbook/trace.h"
 #include "tasks/score/metrics.h"
 

@@ -28,7 +28,7 @@ struct Sums {
     std::vector<double> ldlj;
 };
 
-Window window_of(const ScoreState& score, const TouchProgress& progress) {
+Window window_of(const ScoreState& score, const Progress& progress) {
     Window window;
     const auto samples = static_cast<std::int64_t>(score.tip_m[0].size());
     if (samples == 0)
@@ -79,7 +79,7 @@ void add_forces(Sums& sums, const ScoreState& score, std::size_t t, const Window
 }
 
 void add_ideal(Sums& sums, const ScoreState& score, std::size_t t, const Window& window,
-               const TouchProgress& progress, const ScoreContext& context) {
+               const Progress& progress, const ScoreContext& context) {
     const std::size_t touched = std::min({static_cast<std::size_t>(std::max(progress.next, 0)),
                                           context.ideal_path_m.size(), context.ideal_role.size()});
     std::vector<glm::dvec3> place_m;
@@ -159,9 +159,10 @@ void report_sums(Report& report, const Sums& sums, const std::string& of) {
     report.add("over_force" + of, static_cast<double>(sums.over) * kTick_s, "s", true, true);
 }
 
-void report_errors(Report& report, const TouchProgress& progress) {
-    constexpr std::array<EventKind, 4> kinds{EventKind::wrong_role, EventKind::over_force,
-                                             EventKind::off_target, EventKind::out_of_view};
+void report_errors(Report& report, const Progress& progress) {
+    constexpr std::array<EventKind, 6> kinds{EventKind::wrong_role, EventKind::over_force,
+                                             EventKind::off_target, EventKind::out_of_view,
+                                             EventKind::path_left,  EventKind::order_broken};
     const auto count = [&](EventKind kind) {
         return static_cast<double>(
             std::count_if(progress.events.begin(), progress.events.end(),
@@ -193,7 +194,7 @@ void observe(ScoreState& score, const Observation& seen) {
     }
 }
 
-std::vector<Metric> finish(const ScoreState& score, const TouchProgress& progress,
+std::vector<Metric> finish(const ScoreState& score, const Progress& progress,
                            const ScoreContext& context) {
     const Window window = window_of(score, progress);
     std::array<Sums, kTools> tools;

@@ -3,7 +3,7 @@
 // computes. Definitions carry an id and a version; a change of formula is a new version.
 #pragma once
 
-#include "tasks/exercise/touch_points.h"
+#include "tasks/exercise/progress.h"
 
 #include <optional>
 #include <span>
@@ -51,9 +51,9 @@ struct ScoreContext {
 ///   out_of_view*            share of tool ticks
 ///   force_mean*, force_peak*, impulse*   N, N, N s over contact ticks; 0 without contact
 ///   over_force*             s above the limit (combined: any tool above it), unfiltered
-///   over_force_episodes, errors, errors.KIND for all four kinds   counts, from the events
+///   over_force_episodes, errors, errors.KIND for every kind of error   counts, from the events
 /// * also per role, as id.left, id.right, id.assist, for tools that were present.
-std::vector<Metric> finish(const ScoreState& score, const TouchProgress& progress,
+std::vector<Metric> finish(const ScoreState& score, const Progress& progress,
                            const ScoreContext& context);
 
 /// Log dimensionless jerk of a speed-defining path sampled at fs, unfiltered:

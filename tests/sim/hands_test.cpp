@@ -23,11 +23,13 @@ double metric(const sim::Attempt::Outcome& outcome, const std::string& id) {
     return -1.0;
 }
 
-Results attempts(const std::string& hands, bool noise = true, int seeds = kSeeds) {
+Results attempts(const std::string& hands, bool noise = true, int seeds = kSeeds,
+                 const std::string& exercise = "touch-points") {
     Results results;
     for (int seed = 1; seed <= seeds; ++seed) {
         sim::RunOptions options;
         options.hands = hands;
+        options.exercise = exercise;
         options.seed = static_cast<std::uint64_t>(seed);
         options.noise = noise;
         const auto session = sim::make_session(options);
@@ -54,11 +56,11 @@ double sum(const std::vector<double>& values) {
     return total;
 }
 
-} // namespace
-
-TEST_CASE("hands: expert, intermediate and novice complete in the order of their skill") {
-    const Results expert = attempts("expert"), middle = attempts("intermediate"),
-                  novice = attempts("novice");
+void complete_in_order(const std::string& exercise) {
+    CAPTURE(exercise);
+    const Results expert = attempts("expert", true, kSeeds, exercise),
+                  middle = attempts("intermediate", true, kSeeds, exercise),
+                  novice = attempts("novice", true, kSeeds, exercise);
     for (const Results* r : {&expert, &middle, &novice}) {
         CHECK(r->completed == kSeeds);
         CHECK(r->valid == kSeeds);
@@ -73,11 +75,21 @@ TEST_CASE("hands: expert, intermediate and novice complete in the order of their
     CHECK(sum(middle.errors) < sum(novice.errors));
 }
 
+} // namespace
+
+TEST_CASE("hands: expert, intermediate and novice complete in the order of their skill") {
+    for (const char* exercise : {"touch-points", "follow-path"})
+        complete_in_order(exercise);
+}
+
 TEST_CASE("hands: without noise nobody makes an error") {
     for (const char* hands : {"expert", "intermediate", "novice"}) {
-        const Results results = attempts(hands, false, 1);
-        CHECK(results.completed == 1);
-        CHECK(sum(results.errors) == 0.0);
+        for (const char* exercise : {"touch-points", "follow-path"}) {
+            CAPTURE(exercise);
+            const Results results = attempts(hands, false, 1, exercise);
+            CHECK(results.completed == 1);
+            CHECK(sum(results.errors) == 0.0);
+        }
     }
 }
 

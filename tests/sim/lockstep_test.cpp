@@ -40,6 +40,56 @@ struct TemporaryLog {
     ~TemporaryLog() { std::filesystem::remove_all(folder); }
 };
 
+// Short, but long enough to touch.
+void replay_of(const std::string& exercise) {
+    CAPTURE(exercise);
+    const TemporaryLog log;
+    tasks::Logbook logbook(log.path());
+    std::int64_t id = 0;
+    sim::RunOptions options = short_run(5);
+    options.exercise = exercise;
+    const sim::Attempt::Outcome live = perform(options, &logbook, &id);
+    const auto row = logbook.attempt(id);
+    REQUIRE(row);
+    std::vector<tasks::Chunk> chunks;
+    for (const auto& bytes : logbook.chunks(id))
+        chunks.push_back(tasks::decode_chunk(bytes));
+    const auto session = sim::session_of(*row);
+    const sim::ReplayResult again = sim::run_replay(*session, *row, chunks, logbook.events(id));
+    CHECK(again.worst_force_difference_n == 0.0);
+    CHECK(again.first_difference_tick == -1);
+    CHECK(again.outcome.row.log_sha256 == live.row.log_sha256);
+}
+
+void rescore_of(const std::string& kind) {
+    CAPTURE(kind);
+    const TemporaryLog log;
+    tasks::Logbook logbook(log.path());
+    std::int64_t id = 0;
+    sim::RunOptions options = short_run(6);
+    options.exercise = kind;
+    const sim::Attempt::Outcome live = perform(options, &logbook, &id);
+    const auto row = logbook.attempt(id);
+    REQUIRE(row);
+    const sim::Scene scene = sim::parse_scene(row->scene_text, "log");
+    const tasks::Exercise exercise = tasks::parse_exercise(row->exercise_text, "log");
+    sim::Attempt fold(scene, exercise, std::vector<tasks::Target>(exercise.target.size()), *row,
+                      nullptr);
+    for (const auto& bytes : logbook.chunks(id)) {
+        const tasks::Chunk chunk = tasks::decode_chunk(bytes);
+        for (const tasks::StepTrace& step : chunk.steps)
+            fold.add(step);
+        for (const tasks::TickTrace& tick : chunk.ticks)
+            fold.add(tick);
+    }
+    const std::vector<tasks::Metric> again = fold.finish(row->rig).metrics;
+    REQUIRE(again.size() == live.metrics.size());
+    for (std::size_t i = 0; i < again.size(); ++i) {
+        CHECK(again[i].id == live.metrics[i].id);
+        CHECK(again[i].value == live.metrics[i].value);
+    }
+}
+
 } // namespace
 
 TEST_CASE("lockstep: the same seed gives the same hash, another seed another") {
@@ -75,20 +125,8 @@ TEST_CASE("lockstep: no rig fault, and the tools do touch the tissue") {
 }
 
 TEST_CASE("replay: a recorded attempt gives the same hash and the same forces") {
-    const TemporaryLog log;
-    tasks::Logbook logbook(log.path());
-    std::int64_t id = 0;
-    const sim::Attempt::Outcome live = perform(short_run(5), &logbook, &id);
-    const auto row = logbook.attempt(id);
-    REQUIRE(row);
-    std::vector<tasks::Chunk> chunks;
-    for (const auto& bytes : logbook.chunks(id))
-        chunks.push_back(tasks::decode_chunk(bytes));
-    const auto session = sim::session_of(*row);
-    const sim::ReplayResult again = sim::run_replay(*session, *row, chunks, logbook.events(id));
-    CHECK(again.worst_force_difference_n == 0.0);
-    CHECK(again.first_difference_tick == -1);
-    CHECK(again.outcome.row.log_sha256 == live.row.log_sha256);
+    for (const char* exercise : {"touch-points", "follow-path"})
+        replay_of(exercise);
 }
 
 TEST_CASE("replay: another coupling moves the same way and feels different") {
@@ -108,27 +146,23 @@ TEST_CASE("replay: another coupling moves the same way and feels different") {
 }
 
 TEST_CASE("rescore: the recorded ticks alone give back every metric exactly") {
-    const TemporaryLog log;
-    tasks::Logbook logbook(log.path());
-    std::int64_t id = 0;
-    const sim::Attempt::Outcome live = perform(short_run(6), &logbook, &id);
-    const auto row = logbook.attempt(id);
-    REQUIRE(row);
-    const sim::Scene scene = sim::parse_scene(row->scene_text, "log");
-    const tasks::TouchPoints exercise = tasks::parse_touch_points(row->exercise_text, "log");
-    sim::Attempt fold(scene, exercise, std::vector<tasks::Target>(exercise.target.size()), *row,
-                      nullptr);
-    for (const auto& bytes : logbook.chunks(id)) {
-        const tasks::Chunk chunk = tasks::decode_chunk(bytes);
-        for (const tasks::StepTrace& step : chunk.steps)
-            fold.add(step);
-        for (const tasks::TickTrace& tick : chunk.ticks)
-            fold.add(tick);
-    }
-    const std::vector<tasks::Metric> again = fold.finish(row->rig).metrics;
-    REQUIRE(again.size() == live.metrics.size());
-    for (std::size_t i = 0; i < again.size(); ++i) {
-        CHECK(again[i].id == live.metrics[i].id);
-        CHECK(again[i].value == live.metrics[i].value);
+    for (const char* exercise : {"touch-points", "follow-path"})
+        rescore_of(exercise);
+}
+
+TEST_CASE("follow-path: an expert draws along the whole path, valid and without leaving it") {
+    sim::RunOptions options;
+    options.exercise = "follow-path";
+    options.seed = 2;
+    const sim::Attempt::Outcome outcome = perform(options);
+    CHECK(outcome.row.completed);
+    CHECK(outcome.row.valid);
+    for (const tasks::Metric& m : outcome.metrics) {
+        if (m.id == "errors")
+            CHECK(m.value == 0.0);
+        if (m.id == "path_coverage")
+            CHECK(m.value > 0.95);
+        if (m.id == "deviation_rms")
+            CHECK(m.value < 2e-3);
     }
 }

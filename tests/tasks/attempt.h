@@ -2,7 +2,7 @@
 // Observations made by hand, for the tests of exercises and scores.
 #pragma once
 
-#include "tasks/exercise/touch_points.h"
+#include "tasks/exercise/progress.h"
 
 #include <algorithm>
 
@@ -11,14 +11,14 @@ namespace tasks::testing {
 inline constexpr glm::dvec3 kFar{0.0, 0.0, 0.08}; // above the tissue, in the picture
 
 /// Two targets on the plane z = 0: "a" for the right tool, "b" for the left one.
-inline TouchPoints two_points() {
-    TouchPoints exercise;
+inline Exercise two_points() {
+    Exercise exercise;
     exercise.target = {{"a", Role::right, {0.0, 0.0, 0.0}}, {"b", Role::left, {0.03, 0.0, 0.0}}};
     return exercise;
 }
 
 /// All tools rest above the tissue, camera looks down from z = 0.2.
-inline Observation at_rest(const TouchPoints& exercise) {
+inline Observation at_rest(const Exercise& exercise) {
     Observation seen;
     seen.view.eye_m = {0.0, 0.0, 0.2};
     seen.targets = static_cast<int>(exercise.target.size());
@@ -38,14 +38,14 @@ inline void touch(Observation& seen, Role role, const glm::dvec3& place_m, doubl
 }
 
 /// The same millisecond, n times.
-inline void repeat(TouchProgress& progress, const TouchPoints& exercise, Observation seen, int n) {
+inline void repeat(Progress& progress, const Exercise& exercise, Observation seen, int n) {
     for (int i = 0; i < n; ++i) {
         seen.tick = progress.last_tick + 1;
         observe(progress, exercise, seen);
     }
 }
 
-inline int count(const TouchProgress& progress, EventKind kind) {
+inline int count(const Progress& progress, EventKind kind) {
     return static_cast<int>(std::count_if(progress.events.begin(), progress.events.end(),
                                           [&](const Event& e) { return e.kind == kind; }));
 }

@@ -161,7 +161,7 @@ TEST_CASE("a hand that is blocked, or finds nothing, tries again and never pushe
     wall.wall_m.x = 0.025;
     wall.start_tip_m[1].x = wall.now.tool[1].tip_m.x = 0.02;
     ToyRig air = make_rig(nine_points()); // targets float far above the tissue
-    for (TouchTarget& target : air.exercise.target)
+    for (ExerciseTarget& target : air.exercise.target)
         target.at_m.z += 0.03;
     ToyRig slime = make_rig(nine_points()); // 67 mm deep before it gives the band's force
     slime.stiffness_npm = 1.5;

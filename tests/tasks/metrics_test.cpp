@@ -15,15 +15,15 @@ namespace {
 
 struct Scored {
     ScoreState score;
-    TouchProgress progress;
+    Progress progress;
     std::vector<Metric> metrics;
 };
 
 // Runs an attempt of n ticks given by `at`, which changes the resting observation.
 Scored scored(int n, const std::function<void(Observation&, double t_s)>& at,
               ScoreContext context = {}) {
-    const TouchPoints exercise = two_points();
-    for (const TouchTarget& target : exercise.target) {
+    const Exercise exercise = two_points();
+    for (const ExerciseTarget& target : exercise.target) {
         context.ideal_path_m.push_back(target.at_m);
         context.ideal_role.push_back(target.role);
     }

@@ -32,8 +32,8 @@ ToyRig performed(const std::string& text, double limit_s) {
 
 TEST_CASE("a script touches all targets in order without an error") {
     std::string text;
-    const TouchPoints exercise = nine_points();
-    for (const TouchTarget& target : exercise.target)
+    const Exercise exercise = nine_points();
+    for (const ExerciseTarget& target : exercise.target)
         text += "[[step]]\nverb = \"touch\"\ntool = \"" + std::string(role_name(target.role)) +
                 "\"\ntarget = \"" + target.id + "\"\n";
     const ToyRig rig = performed(text, 100.0);

@@ -1,4 +1,4 @@
-#include "tasks/exercise/touch_points.h"
+#include "tasks/exercise/progress.h"
 
 #include "relative.h"
 
@@ -10,8 +10,8 @@ using namespace tasks;
 using namespace tasks::testing;
 
 TEST_CASE("a target is touched after hold_s in the band without a break, and not one tick before") {
-    const TouchPoints exercise = two_points();
-    TouchProgress progress;
+    const Exercise exercise = two_points();
+    Progress progress;
     Observation seen = at_rest(exercise);
     repeat(progress, exercise, seen, 10);
     touch(seen, Role::right, {0.002, 0.0, 0.0}, 0.5);
@@ -32,9 +32,9 @@ TEST_CASE("a target is touched after hold_s in the band without a break, and not
 }
 
 TEST_CASE("the band and the radius are inclusive, a hair outside is out") {
-    const TouchPoints exercise = two_points();
+    const Exercise exercise = two_points();
     const auto touched = [&](double x_m, double force_n) {
-        TouchProgress progress;
+        Progress progress;
         Observation seen = at_rest(exercise);
         touch(seen, Role::right, {x_m, 0.0, 0.0}, force_n);
         repeat(progress, exercise, seen, 400);
@@ -57,8 +57,8 @@ TEST_CASE("a tip that sinks below a coarse surface is as near as it is along the
 }
 
 TEST_CASE("the last target completes the attempt and nothing counts after it") {
-    const TouchPoints exercise = two_points();
-    TouchProgress progress;
+    const Exercise exercise = two_points();
+    Progress progress;
     Observation seen = at_rest(exercise);
     repeat(progress, exercise, seen, 1);
     touch(seen, Role::right, {0.0, 0.0, 0.0}, 0.5);
@@ -78,8 +78,8 @@ TEST_CASE("the last target completes the attempt and nothing counts after it") {
 }
 
 TEST_CASE("the first movement is the first tip more than 1 mm from where it started") {
-    const TouchPoints exercise = two_points();
-    TouchProgress progress;
+    const Exercise exercise = two_points();
+    Progress progress;
     Observation seen = at_rest(exercise);
     repeat(progress, exercise, seen, 100);
     seen.tool[2].tip_m.x += 0.9e-3;
@@ -91,8 +91,8 @@ TEST_CASE("the first movement is the first tip more than 1 mm from where it star
 }
 
 TEST_CASE("another tool on the next target is one wrong role after 0.1 s, however long it stays") {
-    const TouchPoints exercise = two_points();
-    TouchProgress progress;
+    const Exercise exercise = two_points();
+    Progress progress;
     Observation seen = at_rest(exercise);
     touch(seen, Role::left, {0.001, 0.0, 0.0}, 0.5);
     repeat(progress, exercise, seen, 99);
@@ -107,8 +107,8 @@ TEST_CASE("another tool on the next target is one wrong role after 0.1 s, howeve
 }
 
 TEST_CASE("a wrong tool that rattles on the target is one contact and one mistake") {
-    const TouchPoints exercise = two_points();
-    TouchProgress progress;
+    const Exercise exercise = two_points();
+    Progress progress;
     Observation on = at_rest(exercise), off = at_rest(exercise);
     touch(on, Role::left, {0.0, 0.0, 0.0}, 0.5);
     for (int i = 0; i < 60; ++i) {
@@ -120,9 +120,9 @@ TEST_CASE("a wrong tool that rattles on the target is one contact and one mistak
 }
 
 TEST_CASE("the tool that rests on the target it has just touched makes no mistake") {
-    TouchPoints exercise = two_points();
+    Exercise exercise = two_points();
     exercise.target[1].at_m = {0.01, 0.0, 0.0};
-    TouchProgress progress;
+    Progress progress;
     Observation seen = at_rest(exercise);
     touch(seen, Role::right, {0.0, 0.0, 0.0}, 0.5);
     repeat(progress, exercise, seen, 3000);
@@ -132,8 +132,8 @@ TEST_CASE("the tool that rests on the target it has just touched makes no mistak
 }
 
 TEST_CASE("force over the limit is one error until it has fallen below 80 percent of it") {
-    const TouchPoints exercise = two_points();
-    TouchProgress progress;
+    const Exercise exercise = two_points();
+    Progress progress;
     Observation seen = at_rest(exercise);
     const auto press = [&](double force_n, int n) {
         touch(seen, Role::right, {0.0, 0.0, 0.0}, force_n);
@@ -150,9 +150,9 @@ TEST_CASE("force over the limit is one error until it has fallen below 80 percen
 }
 
 TEST_CASE("contact away from every target for 0.15 s is one error; near any target it is none") {
-    const TouchPoints exercise = two_points();
+    const Exercise exercise = two_points();
     const auto errors = [&](double x_m, int n) {
-        TouchProgress progress;
+        Progress progress;
         Observation seen = at_rest(exercise);
         touch(seen, Role::right, {x_m, 0.0, 0.0}, 0.2);
         repeat(progress, exercise, seen, n);
@@ -166,8 +166,8 @@ TEST_CASE("contact away from every target for 0.15 s is one error; near any targ
 }
 
 TEST_CASE("a tip that slides away while it holds is off target once it is 3 mm past the radius") {
-    const TouchPoints exercise = two_points();
-    TouchProgress progress;
+    const Exercise exercise = two_points();
+    Progress progress;
     Observation seen = at_rest(exercise);
     for (int i = 0; i < 1000; ++i) { // 10 mm/s along x
         touch(seen, Role::right, {i * 1e-5, 0.01, 0.0}, 0.05);
@@ -180,9 +180,9 @@ TEST_CASE("a tip that slides away while it holds is off target once it is 3 mm p
 }
 
 TEST_CASE("a moving tool out of the picture for more than half a second is an error") {
-    const TouchPoints exercise = two_points();
+    const Exercise exercise = two_points();
     const auto errors = [&](bool seen_before, double speed_mps, int n) {
-        TouchProgress progress;
+        Progress progress;
         Observation seen = at_rest(exercise);
         if (seen_before)
             repeat(progress, exercise, seen, 10);
@@ -200,8 +200,8 @@ TEST_CASE("a moving tool out of the picture for more than half a second is an er
 }
 
 TEST_CASE("an absent tool makes no mistakes and its contact ends") {
-    const TouchPoints exercise = two_points();
-    TouchProgress progress;
+    const Exercise exercise = two_points();
+    Progress progress;
     Observation seen = at_rest(exercise);
     touch(seen, Role::left, {0.0, 0.01, 0.0}, 0.5);
     repeat(progress, exercise, seen, 10);
@@ -214,8 +214,8 @@ TEST_CASE("an absent tool makes no mistakes and its contact ends") {
 }
 
 TEST_CASE("a pause breaks a hold") {
-    const TouchPoints exercise = two_points();
-    TouchProgress progress;
+    const Exercise exercise = two_points();
+    Progress progress;
     Observation seen = at_rest(exercise);
     touch(seen, Role::right, {0.0, 0.0, 0.0}, 0.5);
     repeat(progress, exercise, seen, 200);
@@ -228,9 +228,9 @@ TEST_CASE("a pause breaks a hold") {
 }
 
 TEST_CASE("an attempt times out time_limit_s after its first movement") {
-    TouchPoints exercise = two_points();
+    Exercise exercise = two_points();
     exercise.time_limit_s = 1.0;
-    TouchProgress progress;
+    Progress progress;
     Observation seen = at_rest(exercise);
     repeat(progress, exercise, seen, 3000);
     CHECK_FALSE(timed_out(progress, exercise));
@@ -243,7 +243,7 @@ TEST_CASE("an attempt times out time_limit_s after its first movement") {
 
 TEST_CASE("the fold can be stopped, copied and resumed anywhere with the same result") {
     CHECK(rc::check("resumable", [](std::vector<unsigned> choices, unsigned stop) {
-        const TouchPoints exercise = two_points();
+        const Exercise exercise = two_points();
         const auto at = [&](std::size_t i) {
             Observation seen = at_rest(exercise);
             const unsigned c = choices[i / 120];
@@ -254,13 +254,13 @@ TEST_CASE("the fold can be stopped, copied and resumed anywhere with the same re
             return seen;
         };
         const std::size_t n = choices.size() * 120;
-        TouchProgress whole, first;
+        Progress whole, first;
         for (std::size_t i = 0; i < n; ++i)
             observe(whole, exercise, at(i));
         const std::size_t half = n == 0 ? 0 : stop % n;
         for (std::size_t i = 0; i < half; ++i)
             observe(first, exercise, at(i));
-        TouchProgress second = first;
+        Progress second = first;
         for (std::size_t i = half; i < n; ++i)
             observe(second, exercise, at(i));
         RC_ASSERT(second.next == whole.next);

@@ -13,7 +13,7 @@
 namespace tasks::testing {
 
 struct ToyRig {
-    TouchPoints exercise;
+    Exercise exercise;
     double stiffness_npm = 50.0; // of the tissue under one tip, no friction
     double grip_npm = 400.0;
     double lag_s = 0.02; // of hand, device and tissue
@@ -25,7 +25,7 @@ struct ToyRig {
         glm::dvec3{-0.03, 0.0, 0.04}, {0.03, 0.0, 0.04}, {0.0, -0.03, 0.04}};
     std::int64_t tick = 0;
     Observation now;
-    TouchProgress progress;
+    Progress progress;
     ScoreState score;
 };
 
@@ -33,7 +33,7 @@ inline double now_s(const ToyRig& rig) {
     return static_cast<double>(rig.tick) * kTick_s;
 }
 
-inline ToyRig make_rig(const TouchPoints& exercise) {
+inline ToyRig make_rig(const Exercise& exercise) {
     ToyRig rig;
     rig.exercise = exercise;
     rig.now.view.eye_m = {0.0, -0.05, 0.15}; // looks obliquely, as an endoscope does
@@ -46,8 +46,8 @@ inline ToyRig make_rig(const TouchPoints& exercise) {
 }
 
 /// Nine targets within 60 mm, on the plane z = 0, three for each tool.
-inline TouchPoints nine_points() {
-    TouchPoints exercise;
+inline Exercise nine_points() {
+    Exercise exercise;
     const double place[9][2] = {{30, 20}, {-35, 5},  {12, 25},   {0, 0},    {-18, 26},
                                 {38, 4},  {15, -14}, {-40, -18}, {-22, -12}};
     const Role role[9] = {Role::right, Role::left,   Role::right, Role::assist, Role::left,

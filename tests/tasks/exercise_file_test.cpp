@@ -1,4 +1,4 @@
-#include "tasks/exercise/touch_points.h"
+#include "tasks/exercise/exercise.h"
 
 #include "relative.h"
 
@@ -6,7 +6,7 @@
 #include <rapidcheck.h>
 #include <sstream>
 
-using tasks::parse_touch_points;
+using tasks::parse_exercise;
 using tasks::testing::relative;
 
 namespace {
@@ -34,7 +34,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 std::string message(const std::string& text) {
     try {
-        parse_touch_points(text, "x.toml");
+        parse_exercise(text, "x.toml");
     } catch (const std::invalid_argument& error) {
         return error.what();
     }
@@ -44,7 +44,7 @@ std::string message(const std::string& text) {
 } // namespace
 
 TEST_CASE("an exercise file becomes the exercise, millimetres become metres") {
-    const tasks::TouchPoints exercise = parse_touch_points(kGood, "x.toml");
+    const tasks::Exercise exercise = parse_exercise(kGood, "x.toml");
     CHECK(exercise.id == "t");
     CHECK(exercise.card == "Do it.");
     CHECK(exercise.radius_m == 0.004);
@@ -71,7 +71,8 @@ TEST_CASE("a mistake in an exercise file is named by file, line, key, value and 
     CHECK(said("[20, 0, 0]", "[20, 0]") ==
           "x.toml:13: at_mm = [20,0]: [x, y, z] in millimetres, each -500 to 500");
     CHECK(said("force_limit_n = 3", "force_limt_n = 3") ==
-          "x.toml:5: force_limt_n = 3: unknown key; accepted here: id, title, card, radius_m, "
+          "x.toml:5: force_limt_n = 3: unknown key; accepted here: kind, id, title, card, "
+          "radius_m, "
           "force_min_n, force_max_n, hold_s, force_limit_n, time_limit_s, target");
     CHECK(said("title = \"T\"\n", "") == "x.toml:1: title is missing: text in quotes");
     CHECK(said("id = \"2\"", "id = \"1\"") ==
@@ -124,10 +125,70 @@ TEST_CASE("the shipped exercise has nine targets, three for each tool") {
     std::ifstream file(TROCAR_ASSETS "/exercises/touch-points.toml");
     std::stringstream text;
     text << file.rdbuf();
-    const tasks::TouchPoints exercise = parse_touch_points(text.str(), "touch-points.toml");
+    const tasks::Exercise exercise = parse_exercise(text.str(), "touch-points.toml");
     REQUIRE(exercise.target.size() == 9);
     std::array<int, 4> roles{};
-    for (const tasks::TouchTarget& target : exercise.target)
+    for (const tasks::ExerciseTarget& target : exercise.target)
         ++roles[static_cast<std::size_t>(target.role)];
     CHECK(roles == std::array<int, 4>{3, 3, 3, 0});
+}
+
+namespace {
+
+const std::string kPath = R"(kind = "follow-path"
+id = "p"
+title = "P"
+card = "Draw."
+role = "left"
+[[point]]
+at_mm = [0, 0, 0]
+[[point]]
+at_mm = [25, 0, 0]
+organ = "liver"
+[[point]]
+at_mm = [50, 0, 0]
+[[point]]
+at_mm = [75, 0, 0]
+[[point]]
+at_mm = [100, 0, 0]
+[[point]]
+at_mm = [120, 0, 0]
+)";
+
+} // namespace
+
+TEST_CASE("a path's file becomes numbered points of one role, 4 mm wide unless it says more") {
+    const tasks::Exercise exercise = parse_exercise(kPath, "x.toml");
+    CHECK(exercise.kind == tasks::ExerciseKind::follow_path);
+    CHECK(exercise.radius_m == 4e-3);
+    REQUIRE(exercise.target.size() == 6);
+    CHECK(exercise.target[1].id == "2");
+    CHECK(exercise.target[1].organ == "liver");
+    for (const tasks::ExerciseTarget& point : exercise.target)
+        CHECK(point.role == tasks::Role::left);
+}
+
+TEST_CASE("a mistake in a path's file is named by its line and what is accepted") {
+    CHECK(message(replaced(kPath, "follow-path", "follow")) ==
+          "x.toml:1: kind = \"follow\": one of \"touch-points\", \"follow-path\"");
+    CHECK(message(replaced(kPath, "[25, 0, 0]", "[26, 0, 0]")) ==
+          "x.toml:9: at_mm = [26,0,0]: a place 2 to 25 mm from the point before; it is 26 mm from "
+          "it");
+    CHECK(message(replaced(kPath, "[120, 0, 0]", "[119, 0, 0]")) ==
+          "x.toml:6: point = 6 tables: tables written as [[point]], 120 mm long together or more; "
+          "they are 119 "
+          "mm");
+    CHECK(message(replaced(kPath, "role = \"left\"", "hold_s = 1")).find("hold_s") !=
+          std::string::npos);
+    CHECK(message(replaced(kPath, "role = \"left\"", "")) ==
+          "x.toml:1: role is missing: one of \"left\", \"right\", \"assist\"");
+}
+
+TEST_CASE("the shipped path is one") {
+    std::ifstream in(TROCAR_ASSETS "/exercises/follow-path.toml");
+    std::stringstream text;
+    text << in.rdbuf();
+    const tasks::Exercise exercise = parse_exercise(text.str(), "follow-path.toml");
+    CHECK(exercise.kind == tasks::ExerciseKind::follow_path);
+    CHECK(exercise.force_max_n < exercise.force_limit_n);
 }
