@@ -93,7 +93,8 @@ int add_modes(Body& body, std::span<const tissue::BasisContact> contacts,
     return first;
 }
 
-void fill_patch(const Body& body, const tissue::Patch& patch, haptics::ToolPatch& out) noexcept {
+void fill_patch(const Body& body, const tissue::Patch& patch, int tool,
+                haptics::ToolPatch& out) noexcept {
     const tissue::ContactSurface& skin = body.organ->surface;
     out.vertices = static_cast<int>(patch.vertex.size());
     out.triangles = static_cast<int>(patch.triangle.size());
@@ -101,7 +102,7 @@ void fill_patch(const Body& body, const tissue::Patch& patch, haptics::ToolPatch
         const std::uint32_t s = patch.vertex[v];
         out.vertex[v] = {.anchor_m = body.skin_m[s],
                          .normal = body.skin_normal[s],
-                         .radius_over_thickness = body.radius_over_thickness[s],
+                         .radius_over_thickness = body.tip[tool].radius_m * body.thinness_1pm[s],
                          .normal_mpn = body.normal_mpn[s],
                          .tangential_mpn = body.tangential_mpn[s]};
     }
@@ -131,14 +132,14 @@ void fill_tool(TissueRig& rig, int tool, haptics::ToolPatch& out) noexcept {
     const Body& body = rig.bodies[contact.body];
     out.body = static_cast<std::uint8_t>(contact.body);
     out.friction = body.material.friction;
-    out.table = body.table.get();
+    out.table = body.tip[tool].table.get();
     out.floor_mpn = rig.floor_mpn[tool];
     const double span_s = (rig.config.latency_periods + 2.0) * rig.config.step_s;
     tissue::Patch& patch = rig.patch[tool];
     tissue::gather_patch(body.organ->surface, body.skin_m,
                          static_cast<std::uint32_t>(contact.at.triangle),
                          rig.config.patch_radius_m + contact.speed_mps * span_s, patch);
-    fill_patch(body, patch, out);
+    fill_patch(body, patch, tool, out);
     out.contact = {patch.triangle_local[contact.at.triangle], contact.at.weight};
     out.memory = rig.memory[tool];
 }

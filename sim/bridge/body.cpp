@@ -10,12 +10,12 @@
 namespace sim {
 namespace {
 
-std::unique_ptr<haptics::IndenterTable> make_table(const tissue::Material& material,
-                                                   double tip_radius_m) {
+std::shared_ptr<const haptics::IndenterTable> make_table(const tissue::Material& material,
+                                                         double tip_radius_m) {
     using Table = haptics::IndenterTable;
     const tissue::SphereLaw law = tissue::make_sphere_law(
         tip_radius_m, material.young_pa, material.poisson, Table::kLevels, Table::kEntries);
-    auto table = std::make_unique<Table>();
+    auto table = std::make_shared<Table>();
     table->force_scale_n = law.force_scale_n;
     table->x_step = law.x_step;
     for (int level = 0; level < Table::kLevels; ++level) {
@@ -36,7 +36,7 @@ std::unique_ptr<haptics::IndenterTable> make_table(const tissue::Material& mater
 
 // Linear part of the sub-grid law: what linear tetrahedra owe, less the kernel's own compliance,
 // which the rows of the mesh already carry.
-void fill_law(Body& body, double tip_radius_m) {
+void fill_law(Body& body) {
     const tissue::ContactSurface& skin = body.organ->surface;
     const tissue::Material& m = body.material;
     const double ratio_t = tissue::tangential_ratio(m.poisson);
@@ -44,12 +44,22 @@ void fill_law(Body& body, double tip_radius_m) {
         const double thickness = skin.thickness_m[v];
         const double r = skin.footprint_radius_m[v];
         const double infinite = std::numeric_limits<double>::infinity();
-        body.radius_over_thickness[v] = tip_radius_m / thickness;
+        body.thinness_1pm[v] = 1.0 / thickness;
         body.normal_mpn[v] = skin.mesh_term_n_m[v] / m.young_pa -
                              tissue::kernel_compliance_mpn(m.young_pa, m.poisson, r, thickness);
         body.tangential_mpn[v] =
             skin.mesh_term_t_m[v] / m.young_pa -
             ratio_t * tissue::kernel_compliance_mpn(m.young_pa, m.poisson, r, infinite);
+    }
+}
+
+void fill_tips(Body& body, const TipRadii& tip_radius_m) {
+    for (std::size_t i = 0; i < tip_radius_m.size(); ++i) {
+        const auto first = std::find(tip_radius_m.begin(), tip_radius_m.end(), tip_radius_m[i]);
+        const auto same = static_cast<std::size_t>(first - tip_radius_m.begin());
+        body.tip[i] = same < i
+                          ? body.tip[same]
+                          : TipLaw{make_table(body.material, tip_radius_m[i]), tip_radius_m[i]};
     }
 }
 
@@ -66,7 +76,7 @@ glm::dvec3 mixed(const std::vector<glm::dvec3>& values, const tissue::Triangle& 
 } // namespace
 
 Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Material& material,
-               double tip_radius_m, double dt_s) {
+               const TipRadii& tip_radius_m, double dt_s) {
     Body body;
     body.organ = std::move(organ);
     body.material = material;
@@ -80,15 +90,15 @@ Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Ma
             body.some_triangle[v] = static_cast<std::uint32_t>(t);
         }
     }
-    body.radius_over_thickness.assign(vertices, 0.0);
+    body.thinness_1pm.assign(vertices, 0.0);
     body.normal_mpn.assign(vertices, 0.0);
     body.tangential_mpn.assign(vertices, 0.0);
     if (body.organ->rigid) {
         tissue::place_surface(skin, {}, {}, body.skin_m, body.skin_normal);
         return body;
     }
-    body.table = make_table(material, tip_radius_m);
-    fill_law(body, tip_radius_m);
+    fill_tips(body, tip_radius_m);
+    fill_law(body);
     tissue::CorotatedModel model = tissue::make_corotated(
         body.organ->mesh, material, body.organ->anchored, glm::dvec3{0.0}, body.organ->bed);
     tissue::CorotatedState state = tissue::rest_state(model);
@@ -106,11 +116,12 @@ Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Ma
     return body;
 }
 
-haptics::LocalLaw law_on(const Body& body, const haptics::SurfacePoint& at,
+haptics::LocalLaw law_on(const Body& body, const haptics::SurfacePoint& at, int tool,
                          double floor_mpn) noexcept {
     const tissue::Triangle& t = body.organ->surface.triangles[at.triangle];
-    return {.table = body.table.get(),
-            .radius_over_thickness = mixed(body.radius_over_thickness, t, at.weight),
+    const TipLaw& tip = body.tip[tool];
+    return {.table = tip.table.get(),
+            .radius_over_thickness = tip.radius_m * mixed(body.thinness_1pm, t, at.weight),
             .normal_mpn = mixed(body.normal_mpn, t, at.weight),
             .tangential_mpn = mixed(body.tangential_mpn, t, at.weight),
             .floor_mpn = floor_mpn};

@@ -33,23 +33,30 @@ struct SoftBody {
     bool resting = true; // nothing touches it and nothing moves: steps cost nothing
 };
 
+/// What a tip of one radius meets on a material. Tools with equal tips share the table.
+struct TipLaw {
+    std::shared_ptr<const haptics::IndenterTable> table; // null: rigid
+    double radius_m = 0.0;
+};
+using TipRadii = std::array<double, haptics::kTools>;
+
 struct Body {
     std::shared_ptr<const tissue::BakedOrgan> organ;
     tissue::Material material;
-    std::unique_ptr<haptics::IndenterTable> table; // null: rigid
     std::optional<SoftBody> soft;
     std::vector<glm::dvec3> skin_m, skin_normal; // as deformed now
     std::vector<std::uint32_t> some_triangle;    // one triangle at each skin vertex
-    // the sub-grid law at each skin vertex, for this tip radius and material
-    std::vector<double> radius_over_thickness, normal_mpn, tangential_mpn;
+    // the sub-grid law: at each skin vertex for this material, and for the tip of each tool
+    std::vector<double> thinness_1pm, normal_mpn, tangential_mpn; // thinness: 1 / thickness
+    std::array<TipLaw, haptics::kTools> tip;
 };
 
 /// `dt_s`: the FEM step that the first system is factored for. Throws on bad data, with the reason.
 Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Material& material,
-               double tip_radius_m, double dt_s);
+               const TipRadii& tip_radius_m, double dt_s);
 
-/// The sub-grid law where `at` lies on the skin; `floor_mpn` is 1/Kc of the tool there.
-haptics::LocalLaw law_on(const Body& body, const haptics::SurfacePoint& at,
+/// The sub-grid law of a tool where `at` lies on the skin; `floor_mpn` is 1/Kc of the tool there.
+haptics::LocalLaw law_on(const Body& body, const haptics::SurfacePoint& at, int tool,
                          double floor_mpn) noexcept;
 
 /// Deformed place and unit normal there.

@@ -43,7 +43,7 @@ void follow(TissueRig& rig, int tool, const haptics::ToolTip& tip) noexcept {
                                       .normal = normal_on(body, contact.at),
                                       .tip_radius_m = tip.radius_m,
                                       .friction = body.material.friction,
-                                      .law = law_on(body, contact.at, rig.floor_mpn[tool])};
+                                      .law = law_on(body, contact.at, tool, rig.floor_mpn[tool])};
         const glm::dvec3 slip =
             haptics::predicted_slip(row, contact.own_compliance, rig.memory[tool]);
         contact.at = haptics::walk(BodySurface{body}, contact.at, slip).point;
@@ -142,7 +142,7 @@ void fill_rows(const TissueRig& rig, const ToolsNow& tools,
         row.tip_radius_m = tools.tip[i].radius_m;
         row.normal = contact.normal;
         row.friction = body.material.friction;
-        row.law = law_on(body, contact.at, rig.floor_mpn[i]);
+        row.law = law_on(body, contact.at, i, rig.floor_mpn[i]);
         row.surface_free_m = place;
         if (!still) {
             row.surface_free_m += tissue::row_value(body.soft->model, body.organ->surface,

@@ -179,8 +179,8 @@ class Checker {
         const dvec3 tip_m = place.place_m + tool.tip_radius_m * place.normal;
         const haptics::ShaftPose shaft =
             haptics::shaft_pose(tool.trocar, haptics::handle_for_tip(tool.trocar, tip_m));
-        const haptics::LocalLaw law =
-            law_on(body, place.at, coupling_floor_mpn(shaft, usual.device_npm[0]));
+        const haptics::LocalLaw law = law_on(body, place.at, static_cast<int>(out.role),
+                                             coupling_floor_mpn(shaft, usual.device_npm[0]));
         const double mesh_mpn =
             glm::dot(place.normal, rest.mesh_compliance(place.at) * place.normal);
         out.deep_m = std::min(kDeepPress_m, kDeepShare * thickness_m(place));

@@ -100,7 +100,7 @@ Dimple dimple_of(const TissueRig& rig, int tool) noexcept {
     const Body& body = rig.bodies[contact.body];
     if (!body.soft)
         return out;
-    const haptics::LocalLaw law = law_on(body, contact.at, rig.floor_mpn[tool]);
+    const haptics::LocalLaw law = law_on(body, contact.at, tool, rig.floor_mpn[tool]);
     const tissue::Triangle& corner = body.organ->surface.triangles[contact.at.triangle];
     out.body = contact.body;
     out.centre_m = place_on(body, contact.at);

@@ -8,9 +8,11 @@ namespace sim {
 
 std::vector<Body> make_bodies(const LoadedScene& loaded, double step_s) {
     std::vector<Body> bodies;
+    TipRadii tips{};
+    for (std::size_t t = 0; t < tips.size(); ++t)
+        tips[t] = loaded.scene.tool[t].tip_radius_m;
     for (std::size_t i = 0; i < loaded.organ.size(); ++i) {
-        bodies.push_back(make_body(loaded.organ[i], loaded.scene.organ[i].material,
-                                   loaded.scene.tool[0].tip_radius_m, step_s));
+        bodies.push_back(make_body(loaded.organ[i], loaded.scene.organ[i].material, tips, step_s));
     }
     return bodies;
 }

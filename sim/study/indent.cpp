@@ -26,7 +26,8 @@ bool anchored_below(const Body& body, const tissue::Triangle& corners) {
 
 Indenter::Indenter(std::shared_ptr<const tissue::BakedOrgan> organ,
                    const tissue::Material& material, double tip_radius_m)
-    : body_(make_body(std::move(organ), material, tip_radius_m,
+    : body_(make_body(std::move(organ), material,
+                      TipRadii{tip_radius_m, tip_radius_m, tip_radius_m},
                       std::numeric_limits<double>::infinity())),
       feel_(body_) {
     if (!body_.soft)
@@ -44,7 +45,7 @@ IndentPoint Indenter::press(const glm::dvec3& near_m, std::span<const double> de
     out.mesh_mpn = glm::dot(out.normal, compliance * out.normal);
     out.tangential_mpn =
         0.5 * (compliance[0][0] + compliance[1][1] + compliance[2][2] - out.mesh_mpn);
-    const haptics::LocalLaw law = law_on(body_, foot.at, 0.0);
+    const haptics::LocalLaw law = law_on(body_, foot.at, 0, 0.0);
     out.linear_mpn = law.normal_mpn;
     const double radius_m = body_.organ->tip_radius_max_m;
     for (const double d : depth_m)

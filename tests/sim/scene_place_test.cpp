@@ -102,3 +102,31 @@ TEST_CASE("scene: an organ that nobody touches stays at rest to the bit") {
     CHECK(liver.soft->state.position_m == liver.organ->mesh.rest_m);
     CHECK(spleen.soft->linearisations > 0);
 }
+
+TEST_CASE("scene: each tool meets the tissue with its own tip") {
+    const Directory mixed, narrow("narrow");
+    const std::string left = "start_tip_mm = [10, 40, 90]\n";
+    mixed.write("scene.toml", with(kScene, left, left + "tip_radius_mm = 1.5\n"));
+    std::string all = kScene;
+    for (const std::string& start : {left, std::string("start_tip_mm = [70, 40, 90]\n"),
+                                     std::string("start_tip_mm = [40, 70, 90]\n")})
+        all = with(all, start, start + "tip_radius_mm = 1.5\n");
+    narrow.write("scene.toml", all);
+    const auto bodies = [](const Directory& d) {
+        return sim::make_bodies(sim::load_scene(d.path()), 0.01);
+    };
+    constexpr double kLight_n = 1e-3; // the contact is small beside either tip
+    const auto depth_m = [](const sim::Body& body, int tool) {
+        const haptics::LocalLaw law = sim::law_on(body, {7, {0.3, 0.3, 0.4}}, tool, 0.0);
+        return haptics::law_at(law, std::cbrt(kLight_n / law.table->force_scale_n)).depth_m;
+    };
+    const std::vector<sim::Body> a = bodies(mixed), b = bodies(narrow), c = bodies(Directory());
+    CHECK(depth_m(a[0], 0) == depth_m(b[0], 0));
+    CHECK(depth_m(a[0], 1) == depth_m(c[0], 1));
+    CHECK(a[0].tip[1].table == a[0].tip[2].table);
+    // Hertz: a sphere of half the radius sinks cbrt(2) times as deep; thick tissue, less the
+    // linear part that both share
+    const double linear_m = kLight_n * sim::law_on(c[0], {7, {0.3, 0.3, 0.4}}, 1, 0.0).normal_mpn;
+    CHECK((depth_m(a[0], 0) - linear_m) / (depth_m(a[0], 1) - linear_m) ==
+          doctest::Approx(std::cbrt(2.0)).epsilon(0.02));
+}
