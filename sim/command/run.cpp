@@ -51,12 +51,14 @@ Attempt::Outcome perform_in_real_time(const RunArguments& a, Session& session, t
     screens.screen = view::Screen::demo;
     Stage stage(session, false, 1);
     session.exchange->surface_wanted = true;
-    return run_realtime(session, log, id, a.seconds, [&](Exchange& exchange) {
+    const auto outcome = run_realtime(session, log, id, a.seconds, [&](Exchange& exchange) {
         const view::UserInput input = window.draw(stage.frame(exchange), screens);
         if (input.zero_forces)
             exchange.zero_forces = true;
         return !asked_to_stop() && input.action != view::Action::quit;
     });
+    fmt::print(stderr, "window: {}\n", view::cost_line(window.cost()));
+    return outcome;
 }
 
 Attempt::Outcome perform(const RunArguments& a, Session& session) {

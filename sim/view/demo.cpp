@@ -1,5 +1,6 @@
 // sim/view/demo.cpp
-// view_demo FOLDER: every page at 1280 x 720 and 800 x 600 as PNG, then what a picture costs.
+// view_demo [FOLDER]: every page at 1280 x 720 and 800 x 600, letters of 100 and 200 %, as PNG into
+// the folder; then what a picture costs.
 #include "sim/view/demo_world.h"
 #include "sim/view/window.h"
 
@@ -89,14 +90,11 @@ Screens pages() {
     return s;
 }
 
-} // namespace
-
-int main(int argc, char** argv) try {
-    const std::string folder = argc > 1 ? argv[1] : ".";
-    World world;
-    Screens screens = pages();
+/// Every page at both sizes of the window and of the letters.
+void take_pictures(const std::string& folder, World& world, Screens& screens, int percent) {
     WindowOptions options;
     options.wait_for_screen = false;
+    options.text_scale = 0.01 * percent;
     Window window(options);
     const std::pair<Screen, const char*> all[] = {
         {Screen::menu, "menu"}, {Screen::card, "card"},     {Screen::demo, "demo"},
@@ -108,21 +106,35 @@ int main(int argc, char** argv) try {
             world.frame.forces_on = screen != Screen::demo;
             for (int i = 0; i < 4; ++i)
                 window.draw(world.frame, screens);
-            window.screenshot(fmt::format("{}/{}_{}.png", folder, name, h));
+            window.screenshot(fmt::format("{}/{}_{}_{}.png", folder, name, h, percent));
         }
     }
+}
+
+/// At full resolution, each size in a window of its own so that its times are its own.
+void measure(World& world, Screens& screens) {
     screens.screen = Screen::run;
     for (const auto& [w, h] : {std::pair{1280, 720}, std::pair{800, 600}}) {
-        window.resize(w, h);
-        for (int i = 0; i < 60; ++i) {
+        WindowOptions options{.width_px = w, .height_px = h};
+        options.wait_for_screen = options.adapt = false;
+        Window window(options);
+        for (int i = 0; i < 200; ++i) {
             world.frame.time_s += 1.0 / 60.0;
             window.draw(world.frame, screens);
         }
-        fmt::print(
-            "{} x {}: {:.1f} ms drawing, {:.1f} ms from picture to picture, share {:.2f}, {}\n", w,
-            h, window.cost().draw_ms, window.cost().frame_ms, window.cost().picture_share,
-            window.cost().renderer);
+        fmt::print("{} x {}: {}\n", w, h, cost_line(window.cost()));
     }
+}
+
+} // namespace
+
+int main(int argc, char** argv) try {
+    World world;
+    Screens screens = pages();
+    if (argc > 1)
+        for (const int percent : {100, 200})
+            take_pictures(argv[1], world, screens, percent);
+    measure(world, screens);
     return 0;
 } catch (const std::exception& problem) {
     fmt::print(stderr, "view_demo: {}\n", problem.what());

@@ -20,6 +20,7 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <fmt/format.h>
 
 namespace view {
 namespace {
@@ -95,7 +96,7 @@ struct Widgets {
 struct Window::Parts {
     explicit Parts(const WindowOptions& options)
         : frame(options), keyboard(frame.window), widgets(frame.window),
-          text_scale(std::clamp(options.text_scale, 1.0, 2.0)) {
+          text_scale(std::clamp(options.text_scale, 1.0, 2.0)), adapt(options.adapt) {
         const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
         cost.renderer = name != nullptr ? name : "unknown";
         // smooth edges cost a software renderer most of its time
@@ -118,6 +119,7 @@ struct Window::Parts {
     double text_scale;
     float loaded_px = 0.0F;
     int samples = 0, width_px = 0, height_px = 0;
+    bool adapt = true;
     Resolution resolution;
     std::optional<Screen> last_screen;
     Clock::time_point last_draw = Clock::now();
@@ -210,7 +212,9 @@ UserInput Window::draw(const ViewFrame& frame, const Screens& screens) {
         glFinish(); // measures the drawing, and keeps the picture no more than one behind
         const double draw_ms = ms_since(p.last_draw);
         p.cost.draw_ms += (draw_ms - p.cost.draw_ms) / 20.0;
-        p.resolution.observe(draw_ms, p.width_px, p.height_px);
+        p.cost.times.record(draw_ms);
+        if (p.adapt)
+            p.resolution.observe(draw_ms, p.width_px, p.height_px);
         p.cost.picture_share = p.resolution.share();
         glfwSwapBuffers(p.frame.window);
     } else {
@@ -238,6 +242,12 @@ void Window::resize(int width_px, int height_px) {
 
 const DrawCost& Window::cost() const noexcept {
     return parts_->cost;
+}
+
+std::string cost_line(const DrawCost& cost) {
+    return fmt::format("{} pictures, drawn in {:.1f} ms (p50), {:.1f} ms (p99), share {:.2f}, {}",
+                       cost.times.pictures(), cost.times.percentile_ms(0.50),
+                       cost.times.percentile_ms(0.99), cost.picture_share, cost.renderer);
 }
 
 } // namespace view

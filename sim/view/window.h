@@ -5,6 +5,7 @@
 #pragma once
 
 #include "sim/view/frame.h"
+#include "sim/view/frame_times.h"
 #include "sim/view/input.h"
 #include "sim/view/screens.h"
 
@@ -24,15 +25,17 @@ struct WindowOptions {
     std::string title = "Trocar";
     bool visible = true;
     bool wait_for_screen = true; // vertical sync; false: draw() returns at once (measurements)
+    bool adapt = true;           // false: always full resolution (measurements)
     double text_scale = 1.0;     // 1.0 .. 2.0
 };
 
-/// What drawing costs, smoothed over about 20 frames.
+/// What drawing costs; the first two smoothed over about 20 frames.
 struct DrawCost {
     double frame_ms = 0.0;      // wall time between two draws
     double draw_ms = 0.0;       // inside draw(), without waiting for the screen
     double picture_share = 1.0; // side length of the 3-D picture against the window: 0.5 .. 1
     std::string renderer;       // as OpenGL names it
+    FrameTimes times;           // of all draw() calls so far
 };
 
 class Window {
@@ -57,5 +60,8 @@ class Window {
     struct Parts;
     std::unique_ptr<Parts> parts_;
 };
+
+/// One line about it for people who look for what is slow.
+std::string cost_line(const DrawCost& cost);
 
 } // namespace view

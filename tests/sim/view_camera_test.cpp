@@ -1,6 +1,7 @@
 // tests/sim/view_camera_test.cpp
 // Geometry and arithmetic of the picture, without a display.
 #include "sim/view/camera_matrix.h"
+#include "sim/view/frame_times.h"
 #include "sim/view/hud.h"
 #include "sim/view/resolution.h"
 #include "sim/view/tool_mesh.h"
@@ -97,4 +98,19 @@ TEST_CASE("The clock shows a second only when it is over") {
     CHECK(clock_text(179.999) == "2:59.9");
     CHECK(clock_text(0.3) == "0:00.3"); // 0.3 is less than three tenths in binary
     CHECK(clock_text(-1.0) == "0:00.0");
+}
+
+TEST_CASE("A percentile of frame times is at most one bin above the exact one") {
+    FrameTimes times;
+    CHECK(times.percentile_ms(0.5) == 0.0);
+    for (int i = 1; i <= 1000; ++i)
+        times.record(0.1 * i); // 0.1 .. 100 ms
+    times.record(1e6);
+    times.record(-1.0);
+    CHECK(times.pictures() == 1002);
+    for (const double share : {0.01, 0.50, 0.99}) {
+        CHECK(times.percentile_ms(share) >= 100.0 * share - 0.2); // two strays among a thousand
+        CHECK(times.percentile_ms(share) <= 100.0 * share + 0.2 + FrameTimes::kBin_ms);
+    }
+    CHECK(times.percentile_ms(1.0) > FrameTimes::kMost_ms);
 }
