@@ -43,14 +43,12 @@ Stage::Stage(const Session& session, bool by_hand, int first_surface_id)
         rest_normal_.push_back(single(body.skin_normal));
     }
     for (std::size_t b = 0; b < rest_m_.size(); ++b) {
-        const Body& body = session.tissue.bodies[b];
-        frame_.surfaces.push_back(
-            {.id = first_surface_id + static_cast<int>(b),
-             .material = body.soft ? view::Material::organ : view::Material::wall,
-             .triangles = body.organ->surface.triangles,
-             .rest_m = rest_m_[b],
-             .position_m = rest_m_[b],
-             .normal = rest_normal_[b]});
+        frame_.surfaces.push_back({.id = first_surface_id + static_cast<int>(b),
+                                   .look = session.scene.scene.organ[b].look,
+                                   .triangles = session.tissue.bodies[b].organ->surface.triangles,
+                                   .rest_m = rest_m_[b],
+                                   .position_m = rest_m_[b],
+                                   .normal = rest_normal_[b]});
     }
     const tasks::View& seen = session.scene.scene.view;
     frame_.camera = {.eye_m = seen.eye_m,

@@ -9,6 +9,7 @@
 #include "sim/loop/tissue_loop.h"
 #include "sim/session/anchor.h"
 #include "sim/session/scene_place.h"
+#include "sim/view/tissue_look.h"
 #include "tasks/exercise/observation.h"
 
 namespace sim {
@@ -17,8 +18,9 @@ struct SceneOrgan {
     std::string name;
     std::string file; // beside scene.toml
     tissue::Material material;
-    std::vector<Anchor> anchor;   // if any, instead of what the organ was baked with
-    double hold_length_m = 10e-3; // L of tissue/mesh/elastic_bed.h
+    std::vector<Anchor> anchor;           // if any, instead of what the organ was baked with
+    double hold_length_m = 10e-3;         // L of tissue/mesh/elastic_bed.h
+    view::Look look = view::Look::tissue; // of the picture only
 };
 
 struct SceneTool {

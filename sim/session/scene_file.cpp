@@ -48,9 +48,17 @@ void parse_anchors(const TomlTable& organ, SceneOrgan& out, Mistakes* mistakes) 
     }
 }
 
+// Without the key an organ named after what it is looks like it.
+view::Look parse_look(const TomlTable& t, const std::string& name) {
+    if (!t.has("look"))
+        return view::look_named(name);
+    return static_cast<view::Look>(
+        t.choice("look", {view::kLookWords.begin(), view::kLookWords.end()}));
+}
+
 SceneOrgan parse_organ(const TomlTable& t) {
     t.accept_only({"name", "file", "young_kpa", "poisson", "density_kgpm3", "damping_mass_1ps",
-                   "damping_stiffness_ms", "friction", "anchor", "hold_length_mm"});
+                   "damping_stiffness_ms", "friction", "anchor", "hold_length_mm", "look"});
     const tissue::Material usual;
     SceneOrgan organ;
     organ.name = t.text("name");
@@ -66,6 +74,7 @@ SceneOrgan parse_organ(const TomlTable& t) {
         1e-3 * t.number("damping_stiffness_ms", {0.0, 1e3}, 1e3 * usual.damping_stiffness_s);
     m.friction = t.number("friction", {0.0, 2.0}, usual.friction);
     organ.hold_length_m = 1e-3 * t.number("hold_length_mm", {0.1, 1000.0}, 10.0);
+    organ.look = parse_look(t, organ.name);
     return organ;
 }
 

@@ -15,8 +15,7 @@ struct World {
     ViewFrame frame;
 
     World() {
-        frame.surfaces = {surface_view(organ, 1, Material::organ),
-                          surface_view(wall, 2, Material::wall)};
+        frame.surfaces = {surface_view(organ, 1, Look::liver), surface_view(wall, 2, Look::wall)};
         const std::array<glm::dvec2, 9> at{{{0.044, 0.022},
                                             {-0.048, 0.006},
                                             {0.014, 0.026},

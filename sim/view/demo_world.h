@@ -61,8 +61,8 @@ inline DemoSurface demo_wall(int side) {
     return s;
 }
 
-inline SurfaceView surface_view(const DemoSurface& s, int id, Material material) {
-    return {id, material, s.triangles, s.rest_m, s.position_m, s.normal};
+inline SurfaceView surface_view(const DemoSurface& s, int id, Look look) {
+    return {id, look, s.triangles, s.rest_m, s.position_m, s.normal};
 }
 
 /// The front of demo_organ()'s ellipsoid (without its lumps, which are 3 mm at most here).

@@ -4,6 +4,8 @@
 // World frame: x to the picture's right, y up, z towards the camera. Called in the render thread.
 #pragma once
 
+#include "sim/view/tissue_look.h"
+
 #include <array>
 #include <cstdint>
 #include <span>
@@ -19,15 +21,13 @@ namespace view {
 enum class Role : std::uint8_t { left, right, assist };
 inline constexpr int kTools = 3;
 
-enum class Material : std::uint8_t { organ, wall }; // parenchyma under serosa; fat and peritoneum
-
 /// A deforming surface; triangles are counter-clockwise seen from outside, their backs not drawn.
 /// `triangles` and `rest_m` must stay the same (address and content) for as long as `id` does: they
 /// are uploaded once. The other two are read in every draw() and may be gone afterwards. All vertex
 /// arrays have the same length; an empty surface draws nothing.
 struct SurfaceView {
     int id = 0; // unique per surface and attempt: give new ids to a new scene
-    Material material = Material::organ;
+    Look look = Look::tissue;
     std::span<const std::array<std::uint32_t, 3>> triangles;
     std::span<const glm::vec3> rest_m;     // undeformed: carries the colour pattern
     std::span<const glm::vec3> position_m; // now

@@ -31,6 +31,18 @@ template <class Owner> Owner made(void (*make)(GLsizei, GLuint*)) {
     return Owner(id);
 }
 
+Texture picture_texture(int width_px, int height_px) {
+    Texture texture = made<Texture>(glGenTextures);
+    glBindTexture(GL_TEXTURE_2D, texture.id());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width_px, height_px, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                 nullptr);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+        glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+    for (const GLenum side : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+        glTexParameteri(GL_TEXTURE_2D, side, GL_CLAMP_TO_EDGE);
+    return texture;
+}
+
 } // namespace
 
 Buffer make_buffer() {
@@ -69,6 +81,9 @@ void Program::set(const char* uniform, int value) const {
 void Program::set(const char* uniform, float value) const {
     glUniform1f(glGetUniformLocation(name_.id(), uniform), value);
 }
+void Program::set(const char* uniform, const glm::vec2& value) const {
+    glUniform2fv(glGetUniformLocation(name_.id(), uniform), 1, glm::value_ptr(value));
+}
 void Program::set(const char* uniform, const glm::vec3& value) const {
     set(uniform, &value, 1);
 }
@@ -93,11 +108,18 @@ void Target::resize(int width_px, int height_px, int samples, bool depth) {
     height_px_ = height_px;
     samples_ = samples;
     frame_ = made<Name<ReleaseFrame>>(glGenFramebuffers);
-    colour_ = made<Name<ReleaseStore>>(glGenRenderbuffers);
     glBindFramebuffer(GL_FRAMEBUFFER, frame_.id());
-    glBindRenderbuffer(GL_RENDERBUFFER, colour_.id());
-    glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_RGBA8, width_px, height_px);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_.id());
+    if (samples > 0) {
+        colour_ = made<Name<ReleaseStore>>(glGenRenderbuffers);
+        glBindRenderbuffer(GL_RENDERBUFFER, colour_.id());
+        glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_RGBA8, width_px, height_px);
+        glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
+                                  colour_.id());
+    } else {
+        picture_ = picture_texture(width_px, height_px);
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, picture_.id(),
+                               0);
+    }
     if (depth) {
         depth_ = made<Name<ReleaseStore>>(glGenRenderbuffers);
         glBindRenderbuffer(GL_RENDERBUFFER, depth_.id());

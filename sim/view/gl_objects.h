@@ -68,6 +68,7 @@ class Program {
     Program(const char* name, const std::string& prelude, const char* vertex, const char* fragment);
     void use() const { glUseProgram(name_.id()); }
     void set(const char* uniform, int value) const;
+    void set(const char* uniform, const glm::vec2& value) const;
     void set(const char* uniform, float value) const;
     void set(const char* uniform, const glm::vec3& value) const;
     void set(const char* uniform, const glm::vec4& value) const;
@@ -79,7 +80,8 @@ class Program {
     Name<ReleaseProgram> name_;
 };
 
-/// Colour (and depth) to draw into. `samples` above 1: must be resolved by blit_to().
+/// Colour (and depth) to draw into. `samples` above 1: must be resolved by blit_to(), and has no
+/// texture.
 class Target {
   public:
     /// Nothing happens if size and samples are as before. Throws WindowError if refused.
@@ -91,10 +93,12 @@ class Target {
     int width_px() const noexcept { return width_px_; }
     int height_px() const noexcept { return height_px_; }
     GLuint frame_id() const noexcept { return frame_.id(); }
+    GLuint texture_id() const noexcept { return picture_.id(); } // smooth, not repeating
 
   private:
     Name<ReleaseFrame> frame_;
     Name<ReleaseStore> colour_, depth_;
+    Texture picture_;
     int width_px_ = 0, height_px_ = 0, samples_ = 0;
 };
 

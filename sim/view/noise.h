@@ -1,5 +1,5 @@
 // sim/view/noise.h
-// A tile of smooth repeating noise for the tissue's colour and film. Pure; the same every time.
+// A tile of repeating noise and vessels for the tissue's colour and film. Pure; always the same.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@ namespace view {
 
 inline constexpr int kNoiseSide = 256;
 
-/// kNoiseSide^2 RGBA bytes, x fastest; four independent channels about one half, repeating.
-/// Its coarsest cells are 1/16 of a side.
+/// kNoiseSide^2 RGBA bytes, x fastest, repeating. RGB: independent smooth noise about one half, its
+/// coarsest cells 1/16 of a side. A: vessels that branch, 0 beside them to 255 in their middle.
 std::vector<std::uint8_t> noise_tile();
 
 } // namespace view

@@ -3,19 +3,22 @@
 #include "sim/view/picture.h"
 
 #include "sim/view/camera_matrix.h"
+#include "sim/view/light.h"
 #include "sim/view/noise.h"
+#include "sim/view/open_sky.h"
 #include "sim/view/shaders.h"
+#include "sim/view/tissue_style.h"
 #include "sim/view/tool_mesh.h"
 
 namespace view {
 namespace {
 
-constexpr GLuint kPosition = 0, kNormal = 1, kRest = 2;
+constexpr GLuint kPosition = 0, kNormal = 1, kRest = 2, kSky = 3;
 
 void attribute(const Buffer& buffer, GLuint slot, int stride_floats, int first_float) {
     glBindBuffer(GL_ARRAY_BUFFER, buffer.id());
     glEnableVertexAttribArray(slot);
-    glVertexAttribPointer(slot, 3, GL_FLOAT, GL_FALSE,
+    glVertexAttribPointer(slot, std::min(3, stride_floats), GL_FLOAT, GL_FALSE,
                           static_cast<GLsizei>(stride_floats * sizeof(float)),
                           reinterpret_cast<const void*>(first_float * sizeof(float)));
 }
@@ -39,12 +42,45 @@ Texture noise_texture() {
     return texture; // repeats in both directions by default
 }
 
+/// Shading that is not needed is not compiled in: a software renderer pays for every line.
+std::size_t tissue_program(bool fine, bool near) {
+    return (fine ? 1U : 0U) + (near ? 2U : 0U);
+}
+Program make_tissue(bool fine, bool near) {
+    return {"tissue",
+            std::string(shaders::prelude) + (fine ? "#define FINE\n" : "") +
+                (near ? "#define NEAR\n" : ""),
+            shaders::tissue_vertex, shaders::tissue_fragment};
+}
+
+/// Whether a tip is within reach of its own shadow, by some of the vertices.
+bool tools_near(const ViewFrame& frame, const SurfaceView& surface) {
+    constexpr float kNear2_m2 = 0.045F * 0.045F;
+    for (const ToolView& tool : frame.tools) {
+        const glm::vec3 tip_m(tool.tip_m);
+        for (std::size_t i = 0; tool.present && i < surface.position_m.size(); i += 3) {
+            const glm::vec3 w = surface.position_m[i] - tip_m;
+            if (glm::dot(w, w) < kNear2_m2)
+                return true;
+        }
+    }
+    return false;
+}
+
+void set_style(const Program& program, const TissueStyle& style) {
+    program.set("deep", style.deep);
+    program.set("pale", style.pale);
+    program.set("vein", style.vein);
+    program.set("tiles", glm::vec3(style.coarse_tiles_1pm, style.fine_tiles_1pm, style.fine_share));
+    program.set("veins", glm::vec3(style.veins, style.small_veins, 0.0F));
+    program.set("film_of", glm::vec3(style.wet, style.bumps, 0.0F));
+}
+
 } // namespace
 
 Picture::Picture()
-    : organ_("organ", shaders::prelude, shaders::tissue_vertex, shaders::tissue_fragment),
-      wall_("wall", std::string(shaders::prelude) + "#define WALL\n", shaders::tissue_vertex,
-            shaders::tissue_fragment),
+    : tissue_{make_tissue(false, false), make_tissue(true, false), make_tissue(false, true),
+              make_tissue(true, true)},
       tool_("tool", shaders::prelude, shaders::tool_vertex, shaders::tool_fragment),
       target_("target", shaders::prelude, shaders::target_vertex, shaders::target_fragment),
       noise_(noise_texture()), cylinder_(make_solid(false)), ball_(make_solid(true)),
@@ -91,11 +127,13 @@ Picture::Solid Picture::make_solid(bool ball) {
     return solid;
 }
 
-Picture::Uploaded& Picture::uploaded(const SurfaceView& surface) {
+Picture::Uploaded& Picture::uploaded(const ViewFrame& frame, std::size_t index) {
+    const SurfaceView& surface = frame.surfaces[index];
     Uploaded& up = surface_[surface.id];
     up.used = true;
     if (up.array.id() == 0) {
-        up = {make_vertex_array(), make_buffer(), make_buffer(), make_buffer(), make_buffer()};
+        up = {make_vertex_array(), make_buffer(), make_buffer(),
+              make_buffer(),       make_buffer(), make_buffer()};
         up.used = true;
         up.vertices = static_cast<GLsizei>(surface.rest_m.size());
         up.indices = static_cast<GLsizei>(3 * surface.triangles.size());
@@ -103,6 +141,8 @@ Picture::Uploaded& Picture::uploaded(const SurfaceView& surface) {
         store(GL_ELEMENT_ARRAY_BUFFER, up.index, surface.triangles, GL_STATIC_DRAW);
         store(GL_ARRAY_BUFFER, up.rest, surface.rest_m, GL_STATIC_DRAW);
         attribute(up.rest, kRest, 3, 0);
+        store(GL_ARRAY_BUFFER, up.sky, open_sky(frame.surfaces, index), GL_STATIC_DRAW);
+        attribute(up.sky, kSky, 1, 0);
         attribute(up.position, kPosition, 3, 0);
         attribute(up.normal, kNormal, 3, 0);
     }
@@ -117,39 +157,52 @@ void Picture::see(const Program& program, const Camera& camera, const glm::mat4&
     program.set("to_clip", to_clip);
     program.set("eye_m", glm::vec3(camera.eye_m));
     program.set("ahead", glm::vec3(glm::normalize(camera.look_at_m - camera.eye_m)));
+    program.set("lamp_size2_m2", static_cast<float>(kLampSize2_m2));
+    program.set("exposure", static_cast<float>(exposure_));
 }
 
-void Picture::draw_surfaces(const ViewFrame& frame, const Program& program, Material material) {
+/// The camera's exposure follows what it sees, slowly, as a real one does.
+void Picture::expose(const ViewFrame& frame) {
+    const double wish = exposure(frame);
+    exposure_ += (wish - exposure_) * (exposure_ > 0.0 ? 0.05 : 1.0);
+    if (frame.surfaces.empty())
+        exposure_ = 0.0; // whatever comes next is a new world
+}
+
+void Picture::draw_surface(const ViewFrame& frame, std::size_t index, const glm::mat4& to_clip) {
+    const SurfaceView& surface = frame.surfaces[index];
+    const std::size_t n = surface.rest_m.size();
+    if (n == 0 || surface.position_m.size() != n || surface.normal.size() != n)
+        return; // not published yet
+    const TissueStyle& style = style_of(surface.look);
+    const bool near = tools_near(frame, surface);
+    const Program& program = tissue_[tissue_program(style.fine_tiles_1pm > 0.0F, near)];
+    see(program, frame.camera, to_clip);
     program.set("noise", 0);
-    for (const SurfaceView& surface : frame.surfaces) {
-        const std::size_t n = surface.rest_m.size();
-        if (surface.material != material || n == 0 || surface.position_m.size() != n ||
-            surface.normal.size() != n)
-            continue; // another's turn, or not published yet
-        const Uploaded& up = uploaded(surface);
-        glDrawElements(GL_TRIANGLES, up.indices, GL_UNSIGNED_INT, nullptr);
-    }
-}
-
-void Picture::draw_tissue(const ViewFrame& frame, const glm::mat4& to_clip) {
+    set_style(program, style);
     std::array<glm::vec4, kTools> tip{};
     std::array<glm::vec3, kTools> back{};
-    for (std::size_t t = 0; t < tip.size(); ++t) {
+    for (std::size_t t = 0; near && t < tip.size(); ++t) {
         const ToolView& tool = frame.tools[t];
         tip[t] = glm::vec4(glm::vec3(tool.tip_m), tool.present ? tool.tip_radius_m : 0.0);
         back[t] = glm::vec3(-tool.direction);
     }
+    program.set("tip", tip.data(), kTools);
+    program.set("back", back.data(), kTools);
+    const Uploaded& up = uploaded(frame, index);
+    glDrawElements(GL_TRIANGLES, up.indices, GL_UNSIGNED_INT, nullptr);
+}
+
+void Picture::draw_tissue(const ViewFrame& frame, const glm::mat4& to_clip) {
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_2D, noise_.id());
     glEnable(GL_CULL_FACE);
     for (auto& [id, up] : surface_)
         up.used = false;
-    see(organ_, frame.camera, to_clip); // before the wall: what they hide is never shaded
-    organ_.set("tip", tip.data(), kTools);
-    organ_.set("back", back.data(), kTools);
-    draw_surfaces(frame, organ_, Material::organ);
-    see(wall_, frame.camera, to_clip);
-    draw_surfaces(frame, wall_, Material::wall);
+    for (const bool walls : {false, true}) // walls last: what organs hide is never shaded
+        for (std::size_t i = 0; i < frame.surfaces.size(); ++i)
+            if ((frame.surfaces[i].look == Look::wall) == walls)
+                draw_surface(frame, i, to_clip);
     std::erase_if(surface_, [](const auto& entry) { return !entry.second.used; });
     glDisable(GL_CULL_FACE);
 }
@@ -170,16 +223,18 @@ void Picture::draw_tools(const ViewFrame& frame, const glm::mat4& to_clip) {
     }
 }
 
-void Picture::draw(const ViewFrame& frame, const Digits& digits, int width_px, int height_px) {
-    const glm::mat4 to_clip(projection_matrix(frame.camera, width_px, height_px) *
-                            view_matrix(frame.camera));
+void Picture::draw(const ViewFrame& frame, const Digits& digits, const Lens& lens, int height_px) {
+    lens_ = lens;
+    height_px_ = height_px;
+    expose(frame);
+    const glm::mat4 to_clip(projection_matrix(frame.camera, lens) * view_matrix(frame.camera));
     glDisable(GL_BLEND);
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_CULL_FACE);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     glDepthMask(GL_TRUE);
-    glClearColor(0.035F, 0.012F, 0.012F, 1.0F);
+    glClearColor(0.030F, 0.010F, 0.010F, 1.0F);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     draw_tools(frame, to_clip); // nearest first: what they hide is never shaded
     draw_tissue(frame, to_clip);

@@ -1,10 +1,11 @@
 // sim/view/picture.h
-// The 3-D picture: tissue, instruments, targets, as the endoscope sees them. Draws into whatever
-// target is bound. Called by Window, in the render thread.
+// The 3-D picture: tissue, instruments, targets, as a pinhole at the endoscope's tip sees them; its
+// lens is Optics. Draws into whatever target is bound. Called by Window, in the render thread.
 #pragma once
 
 #include "sim/view/frame.h"
 #include "sim/view/gl_objects.h"
+#include "sim/view/lens.h"
 
 #include <map>
 
@@ -26,13 +27,13 @@ struct Digits {
 class Picture {
   public:
     Picture();
-    /// `width_px`, `height_px`: of the bound target.
-    void draw(const ViewFrame& frame, const Digits& digits, int width_px, int height_px);
+    /// What `lens` needs, whatever the bound target's size; `height_px`: of the window.
+    void draw(const ViewFrame& frame, const Digits& digits, const Lens& lens, int height_px);
 
   private:
     struct Uploaded {
         VertexArray array;
-        Buffer position, normal, rest, index;
+        Buffer position, normal, rest, sky, index;
         GLsizei indices = 0, vertices = 0;
         bool used = false;
     };
@@ -42,20 +43,25 @@ class Picture {
         GLsizei indices = 0;
     };
     static Solid make_solid(bool ball);
-    Uploaded& uploaded(const SurfaceView& surface);
+    Uploaded& uploaded(const ViewFrame& frame, std::size_t index);
     void see(const Program& program, const Camera& camera, const glm::mat4& to_clip) const;
+    void expose(const ViewFrame& frame);
     void draw_tissue(const ViewFrame& frame, const glm::mat4& to_clip);
-    void draw_surfaces(const ViewFrame& frame, const Program& program, Material material);
+    void draw_surface(const ViewFrame& frame, std::size_t index, const glm::mat4& to_clip);
     void draw_tools(const ViewFrame& frame, const glm::mat4& to_clip);
     void draw_targets(const ViewFrame& frame, const Digits& digits, const glm::mat4& to_clip);
     void draw_target(const ViewFrame& frame, const TargetView& target, const Digits& digits,
                      bool hidden);
 
-    Program organ_, wall_, tool_, target_;
+    std::array<Program, 4> tissue_; // see tissue_program()
+    Program tool_, target_;
     Texture noise_;
     Solid cylinder_, ball_;
     VertexArray square_; // no attributes: corners come from gl_VertexID
     std::map<int, Uploaded> surface_;
+    Lens lens_;
+    int height_px_ = 0;
+    double exposure_ = 0.0; // follows what is seen; 0: nothing seen yet
 };
 
 } // namespace view

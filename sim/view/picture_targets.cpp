@@ -19,12 +19,11 @@ Axes axes_of(const Camera& camera, const TargetView& target) {
     const glm::dvec3 to_eye = glm::normalize(camera.eye_m - target.position_m);
     glm::dvec3 n = target.normal;
     const double facing = glm::dot(n, to_eye);
-    constexpr double kLeast = 0.82; // cos 35 degrees
-    if (facing < kLeast) {
+    if (facing < kLeastFacing) {
         const glm::dvec3 aside = n - facing * to_eye;
         const double length = glm::length(aside);
-        n = length > 1e-9 ? kLeast * to_eye + std::sqrt(1.0 - kLeast * kLeast) / length * aside
-                          : to_eye;
+        const double sine = std::sqrt(1.0 - kLeastFacing * kLeastFacing);
+        n = length > 1e-9 ? kLeastFacing * to_eye + sine / length * aside : to_eye;
     }
     const glm::dvec3 across = glm::normalize(glm::cross(camera.up, n));
     return {across, glm::cross(n, across)};
@@ -57,7 +56,7 @@ void set_number(const Program& program, const Digits& digits, int number, float 
 void Picture::draw_target(const ViewFrame& frame, const TargetView& target, const Digits& digits,
                           bool hidden) {
     const Axes axes = axes_of(frame.camera, target);
-    const double radius_m = drawn_radius_m(target);
+    const double radius_m = drawn_radius_m(frame.camera, lens_, target, height_px_);
     const bool next = target.state == TargetState::next, done = target.state == TargetState::done;
     const glm::vec3 colour = role_colour(target.role);
     glm::vec3 base = next ? colour : colour * 0.80F;

@@ -1,7 +1,7 @@
 // sim/view/shaders.cpp
 // An endoscope's picture on a budget: the lamp sits at the camera, so its highlight looks back at
 // it (half vector = direction to the eye), its light falls with the square of the distance and
-// towards the rim. One or two fetches of noise per fragment carry colour and wetness.
+// towards the rim. One or two fetches of noise per fragment carry colour, vessels and wetness.
 #include "sim/view/shaders.h"
 
 namespace view::shaders {
@@ -9,13 +9,15 @@ namespace view::shaders {
 const char* const prelude = R"(#version 330 core
 uniform vec3 eye_m;
 uniform vec3 ahead;
+uniform float lamp_size2_m2;
+uniform float exposure;
 
-// light at a place, 1 on the axis at 0.16 m: inverse square, softened near the lamp
+// light at a place, as in light.h, times the camera's exposure
 float lamp(vec3 place_m) {
     vec3 ray = place_m - eye_m;
-    float d = length(ray);
-    float rim = clamp(dot(ray, ahead) / max(d, 1e-6), 0.0, 1.0);
-    return rim * rim * 0.0306 / (d * d + 0.005);
+    float d2 = dot(ray, ray);
+    float along = max(dot(ray, ahead), 0.0);
+    return exposure * along * along / max(d2, 1e-9) * (0.0256 + lamp_size2_m2) / (d2 + lamp_size2_m2);
 }
 
 // linear light to the screen: soft shoulder, then gamma 2
@@ -29,14 +31,18 @@ const char* const tissue_vertex = R"(
 layout(location = 0) in vec3 position_m;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 rest_m;
+layout(location = 3) in float open_sky;
 uniform mat4 to_clip;
 out vec3 place;
 out vec3 outward;
-out vec3 rest;
+out vec2 on_tile;
+out float sky;
 void main() {
     place = position_m;
     outward = normal;
-    rest = rest_m;
+    // slanted, so that no side of an organ that the camera sees is drawn out into streaks
+    on_tile = rest_m.xy + rest_m.z * vec2(0.55, 0.75);
+    sky = open_sky;
     gl_Position = to_clip * vec4(position_m, 1.0);
 }
 )";
@@ -44,16 +50,23 @@ void main() {
 const char* const tissue_fragment = R"(
 in vec3 place;
 in vec3 outward;
-in vec3 rest;
+in vec2 on_tile;
+in float sky;
 uniform sampler2D noise;
-uniform vec4 tip[3]; // centre, radius; radius 0: no tool
+uniform vec3 deep;    // tissue_style.h
+uniform vec3 pale;
+uniform vec3 vein;
+uniform vec3 tiles;   // coarse, fine, share of the fine
+uniform vec3 veins;   // large, small
+uniform vec3 film_of; // wet, bumps
+uniform vec4 tip[3];  // centre, radius; radius 0: no tool
 uniform vec3 back[3]; // from tip to handle
 out vec4 colour;
 
-// how much of the sky a sphere hides from a surface point: n.w (r/d)^2
+// how much of the sky a shaft hides from a surface point: n.w r/d, near its end n.w (r/d)^2
 float hidden_by(int i, vec3 n) {
     vec3 from = place - tip[i].xyz;
-    float along = clamp(dot(from, back[i]), 0.0, 0.07);
+    float along = clamp(dot(from, back[i]), 0.0, 0.15);
     vec3 w = along * back[i] - from;
     float d2 = max(dot(w, w), 1e-8);
     float r = 1.55 * tip[i].w;
@@ -63,35 +76,28 @@ float hidden_by(int i, vec3 n) {
 void main() {
     vec3 n = normalize(outward);
     vec3 to_eye = normalize(eye_m - place);
-    if (dot(n, to_eye) < 0.0)
-        n = -n;
-    // slanted, so that no side of an organ that the camera sees is drawn out into streaks
-    vec2 on_tile = rest.xy + rest.z * vec2(0.55, 0.75);
-    vec4 coarse = texture(noise, on_tile * 5.0);
+    vec4 coarse = texture(noise, on_tile * tiles.x);
+    vec3 film = coarse.xyz - 0.5;
+    float mottle = coarse.x;
+    float blood = veins.x * coarse.w;
+#ifdef FINE
+    vec4 fine = texture(noise, on_tile.yx * tiles.y);
+    film = 0.65 * film + 0.35 * (fine.xyz - 0.5);
+    mottle = mix(mottle, fine.x, tiles.z);
+    blood = max(blood, veins.y * fine.w);
+#endif
+    vec3 base = mix(deep, pale, clamp(2.0 * mottle - 0.5, 0.0, 1.0));
+    base = mix(base, vein, blood);
+    film = n + film_of.y * film; // a wet film: small waves turn the mirror, not the shade
 
-    // a wet film: small waves turn the mirror, not the shade
-#ifndef WALL // parenchyma under serosa, lobules as fine mottle
-    vec4 fine = texture(noise, on_tile * 29.0);
-    float mottle = 0.6 * coarse.w + 0.4 * fine.w;
-    vec3 base = mix(vec3(0.130, 0.016, 0.012), vec3(0.330, 0.062, 0.042), mottle);
-    base = mix(base, vec3(0.40, 0.16, 0.10), 0.35 * smoothstep(0.58, 0.85, fine.z));
-    vec3 film = n + 0.42 * (fine.xyz - 0.5) + 0.50 * (coarse.xyz - 0.5);
-    const float wet = 0.60;
-    float hidden = 1.0;
+    float open = 0.35 + 0.65 * sky;
+#ifdef NEAR
     for (int i = 0; i < 3; ++i)
-        hidden *= 1.0 - 0.80 * hidden_by(i, n);
-#else        // peritoneum over fat, vessels where two noises cross one half
-    vec3 base = mix(vec3(0.42, 0.150, 0.105), vec3(0.56, 0.300, 0.175), coarse.w);
-    float vessel = clamp(1.5 - 50.0 * abs(coarse.y - 0.5), 0.0, 1.0);
-    vessel *= clamp(7.0 * coarse.x - 3.4, 0.0, 1.0);
-    base = mix(base, vec3(0.28, 0.035, 0.035), 0.6 * vessel);
-    vec3 film = n + 0.6 * (coarse.xyz - 0.5);
-    const float wet = 0.12;
-    const float hidden = 1.0;
+        open *= 1.0 - 0.85 * hidden_by(i, n);
 #endif
 
     float facing = max(dot(n, to_eye), 0.0);
-    float light = lamp(place);
+    float light = lamp(place) * open;
     float mirror = max(dot(film, to_eye) * inversesqrt(dot(film, film)), 0.0);
     float m2 = mirror * mirror;
     float m4 = m2 * m2;
@@ -99,11 +105,11 @@ void main() {
     float m32 = m8 * m8 * m8 * m8;
     float m128 = m32 * m32 * m32 * m32;
     float away = 1.0 - facing;
-    vec3 lit = base * (2.6 * light * facing * (0.4 + 0.6 * facing) + 0.05);
-    lit += base * vec3(1.0, 0.40, 0.30) * 0.45 * light * away; // light inside the tissue
-    lit += vec3(1.0, 0.93, 0.86) * wet * light * (1.1 * m128 * m128 + 0.10 * m8);
-    lit += vec3(0.10, 0.05, 0.04) * away * away * away * light;
-    colour = vec4(shown(lit * hidden), 1.0);
+    vec3 lit = base * (light * (2.6 * facing * (0.4 + 0.6 * facing) + 0.05));
+    lit += base * vec3(0.45, 0.18, 0.135) * (light * away); // light inside the tissue
+    lit += vec3(1.0, 0.93, 0.86) * (film_of.x * light * (1.5 * m128 * m128 + 0.25 * m32 + 0.06 * m8));
+    lit += vec3(0.10, 0.05, 0.04) * (away * away * away * light);
+    colour = vec4(shown(lit), 1.0);
 }
 )";
 
@@ -212,6 +218,33 @@ void main() {
     if (sum.a < 0.01)
         discard;
     colour = sum;
+}
+)";
+
+const char* const lens_vertex = R"(
+uniform float aspect;
+out vec2 at; // half heights of the window, origin in the middle
+void main() {
+    vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0;
+    at = corner * vec2(aspect, 1.0);
+    gl_Position = vec4(corner, 0.0, 1.0);
+}
+)";
+
+const char* const lens_fragment = R"(
+in vec2 at;
+uniform sampler2D pinhole;
+uniform float rim;    // lens.h
+uniform float barrel;
+uniform vec2 reach;
+out vec4 colour;
+void main() {
+    float r2 = dot(at, at);
+    vec3 seen = texture(pinhole, 0.5 + (0.5 + 0.5 * barrel * r2) * at / reach).rgb;
+    float q = r2 / (rim * rim);
+    float edge = clamp((1.0 - q) * 9.0, 0.0, 1.0); // dark over the last 6 % of the radius
+    edge *= edge * (1.0 - 0.30 * q);
+    colour = vec4(mix(vec3(0.012, 0.011, 0.012), seen, edge), 1.0);
 }
 )";
 

@@ -7,6 +7,7 @@
 #include "sim/view/gl_objects.h"
 #include "sim/view/hud.h"
 #include "sim/view/keyboard.h"
+#include "sim/view/optics.h"
 #include "sim/view/pages.h"
 #include "sim/view/picture.h"
 #include "sim/view/png.h"
@@ -113,6 +114,7 @@ struct Window::Parts {
     Keyboard keyboard;
     Widgets widgets;
     Picture picture;
+    Optics optics;
     Target world, smooth, page;
     Fonts fonts;
     Digits digits;
@@ -144,20 +146,22 @@ void Window::Parts::fit_text() {
 }
 
 void Window::Parts::draw_world(const ViewFrame& shown) {
-    const double share = resolution.share();
-    const int w = std::max(1, static_cast<int>(std::lround(share * width_px)));
-    const int h = std::max(1, static_cast<int>(std::lround(share * height_px)));
-    world.resize(w, h, samples, true);
+    const Lens lens = lens_of(width_px, height_px);
+    const double half_px = 0.5 * resolution.share() * height_px;
+    const auto side = [&](double reach) { // even like most windows: then the middle stays sharp
+        return 2 * std::max(1, static_cast<int>(std::lround(half_px * reach)));
+    };
+    world.resize(side(lens.reach.x), side(lens.reach.y), samples, true);
     page.resize(width_px, height_px, 0, false);
     world.bind();
-    picture.draw(shown, digits, w, h);
-    if (samples > 0) { // resolving and scaling are two copies
-        smooth.resize(w, h, 0, false);
+    picture.draw(shown, digits, lens, height_px);
+    if (samples > 0) {
+        smooth.resize(world.width_px(), world.height_px(), 0, false);
         world.blit_to(smooth);
-        smooth.blit_to(page);
-    } else {
-        world.blit_to(page);
     }
+    page.bind();
+    optics.draw(samples > 0 ? smooth : world, lens,
+                static_cast<double>(width_px) / std::max(1, height_px));
 }
 
 UserInput Window::Parts::draw_widgets(const ViewFrame& shown, const Screens& screens) {

@@ -14,8 +14,8 @@ using namespace view;
 namespace {
 
 glm::dvec2 pixel(const Camera& camera, const glm::dvec3& place_m, int w, int h) {
-    const glm::dvec4 clip =
-        projection_matrix(camera, w, h) * view_matrix(camera) * glm::dvec4(place_m, 1.0);
+    const glm::dvec4 clip = projection_matrix(camera, Lens{.reach = {1.0 * w / h, 1.0}}) *
+                            view_matrix(camera) * glm::dvec4(place_m, 1.0);
     return {0.5 * w * (1.0 + clip.x / clip.w), 0.5 * h * (1.0 + clip.y / clip.w)};
 }
 
@@ -33,7 +33,7 @@ TEST_CASE(
 }
 
 TEST_CASE("The size of a disc is the distance between its edge's pixels, anywhere in the picture") {
-    rc::check([] {
+    CHECK(rc::check([] {
         const auto mm = [](int low, int high) { return 1e-3 * *rc::gen::inRange(low, high); };
         Camera camera; // looks along -z, so that a disc facing it lies in a plane of equal depth
         camera.eye_m = {mm(-50, 50), mm(-50, 50), mm(150, 300)};
@@ -44,7 +44,7 @@ TEST_CASE("The size of a disc is the distance between its edge's pixels, anywher
         const glm::dvec2 a = pixel(camera, centre - glm::dvec3(r, 0, 0), 1280, 720);
         const glm::dvec2 b = pixel(camera, centre + glm::dvec3(r, 0, 0), 1280, 720);
         RC_ASSERT(std::abs(glm::length(b - a) - disc_px(camera, centre, r, 720)) < 1e-6);
-    });
+    }));
 }
 
 TEST_CASE("What is behind the camera has no size") {

@@ -64,7 +64,7 @@ WindowOptions hidden(int w, int h) {
 
 ViewFrame world_of(const DemoSurface& organ) {
     ViewFrame frame;
-    frame.surfaces = {surface_view(organ, 1, Material::organ)};
+    frame.surfaces = {surface_view(organ, 1, Look::liver)};
     return frame;
 }
 

@@ -1,0 +1,32 @@
+// tests/sim/scene_look_test.cpp
+// The key `look` of a scene's organs.
+#include "scene_fixture.h"
+
+using namespace scene_tests;
+
+namespace {
+
+view::Look look_of(const std::string& text) {
+    return sim::parse_scene(text, "scene.toml").organ.at(0).look;
+}
+
+} // namespace
+
+TEST_CASE("scene look: the key decides, without it the organ's name, else neutral tissue") {
+    CHECK(look_of(kScene) == view::Look::tissue);
+    CHECK(look_of(with(kScene, "name = \"block\"", "name = \"kidney\"")) == view::Look::kidney);
+    const std::string said = with(kScene, "name = \"block\"", "name = \"kidney\"\nlook = \"fat\"");
+    CHECK(look_of(said) == view::Look::fat);
+    for (const std::string_view word : view::kLookWords)
+        CHECK(look_of(with(said, "\"fat\"", fmt::format("\"{}\"", word))) ==
+              view::look_named(word));
+}
+
+TEST_CASE("scene look: an unknown word is refused with all that are known") {
+    const std::string text = with(kScene, "name = \"block\"", "name = \"block\"\nlook = \"blue\"");
+    CHECK_THROWS_WITH_AS(look_of(text),
+                         "scene.toml:6: look = \"blue\": one of \"liver\", \"stomach\", "
+                         "\"spleen\", \"kidney\", \"bowel\", \"pancreas\", \"fat\", "
+                         "\"gallbladder\", \"wall\", \"tissue\"",
+                         tasks::BadInput);
+}
