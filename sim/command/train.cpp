@@ -16,14 +16,16 @@ namespace {
 
 struct TrainArguments {
     std::string exercise, scene = "basic", trainee, log, shots;
-    double text_scale = 1.0, shot_seconds = 4.0;
-    int width = 1280, height = 720;
+    double shot_seconds = 4.0;
+    int font_percent = 100, width = 1280, height = 720;
 };
 
 class Trainer {
   public:
     explicit Trainer(const TrainArguments& a)
-        : a_(a), window_({.width_px = a.width, .height_px = a.height, .text_scale = a.text_scale}),
+        : a_(a),
+          window_(
+              {.width_px = a.width, .height_px = a.height, .text_scale = 0.01 * a.font_percent}),
           logbook_(a.log.empty() ? (user_data_dir() / "station.db").string() : a.log),
           log_path_(a.log.empty() ? (user_data_dir() / "station.db").string() : a.log) {
         const ScenePlace place = find_scene(a.scene);
@@ -203,7 +205,8 @@ void add_train(CLI::App& app, int&) {
     c->add_option("exercise", a->exercise, "Go straight to this exercise's card");
     c->add_option("--scene", a->scene, "Name, directory or file of a scene");
     c->add_option("--log", a->log, "Logbook; default: the user's data directory");
-    c->add_option("--text-scale", a->text_scale, "Size of all text")->check(CLI::Range(1.0, 2.0));
+    c->add_option("--font-percent", a->font_percent, "Size of all text; Ctrl + and Ctrl - too")
+        ->check(CLI::Range(100, 200));
     c->add_option("--width", a->width, "Of the window, pixels")->check(CLI::Range(800, 7680));
     c->add_option("--height", a->height, "Of the window, pixels")->check(CLI::Range(600, 4320));
     c->add_option("--screenshots", a->shots, "Folder: take pictures of every screen and leave");

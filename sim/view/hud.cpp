@@ -14,6 +14,9 @@ struct Pen {
     ImDrawList& list;
     const Fonts& fonts;
     float em, width, height; // body text height and window, pixels
+
+    /// Large letters in a small window: what stands side by side goes below one another.
+    bool narrow() const { return width < 42.0F * em; }
 };
 
 void panel(const Pen& pen, ImVec2 from, ImVec2 to) {
@@ -36,39 +39,42 @@ void draw_clock(const Pen& pen, const ViewFrame& frame) {
 
 void draw_next(const Pen& pen, const ViewFrame& frame) {
     const float em = pen.em, x = 0.5F * pen.width, half = 8.0F * em;
+    const float top = pen.narrow() ? 4.0F * em : em;
     const auto is_next = [](const TargetView& t) { return t.state == TargetState::next; };
     const auto next = std::find_if(frame.targets.begin(), frame.targets.end(), is_next);
     const auto done = std::count_if(frame.targets.begin(), frame.targets.end(),
                                     [](const auto& t) { return t.state == TargetState::done; });
-    panel(pen, {x - half, em}, {x + half, 3.6F * em});
+    panel(pen, {x - half, top}, {x + half, top + 2.6F * em});
     if (next == frame.targets.end()) {
-        centred(pen, pen.fonts.large, x, 1.6F * em, ink::text,
+        centred(pen, pen.fonts.large, x, top + 0.6F * em, ink::text,
                 frame.targets.empty() ? "" : "All targets done");
         return;
     }
-    draw_badge(pen.list, {x - half + 1.8F * em, 2.3F * em}, 0.95F * em, next->role,
+    draw_badge(pen.list, {x - half + 1.8F * em, top + 1.3F * em}, 0.95F * em, next->role,
                fmt::format("{}", next->number));
-    draw_text(pen.list, pen.fonts.large, {x - half + 3.4F * em, 1.6F * em}, ink::text,
+    draw_text(pen.list, pen.fonts.large, {x - half + 3.4F * em, top + 0.6F * em}, ink::text,
               fmt::format("{} tool", role_word(next->role)));
     const std::string share = fmt::format("{} / {}", done, frame.targets.size());
     draw_text(pen.list, pen.fonts.body,
-              {x + half - 0.8F * em - text_size(pen.fonts.body, share).x, 1.8F * em}, ink::quiet,
-              share);
+              {x + half - 0.8F * em - text_size(pen.fonts.body, share).x, top + 0.8F * em},
+              ink::quiet, share);
 }
 
 void draw_counters(const Pen& pen, const ViewFrame& frame) {
-    const float em = pen.em, right = pen.width - em, left = right - 11.0F * em;
+    const float em = pen.em, right = pen.width - em,
+                left = right - (pen.narrow() ? 9.0F : 11.0F) * em;
     panel(pen, {left, em}, {right, 3.6F * em});
     const ImU32 colour = frame.errors > 0 ? ink::warn : ink::text;
     draw_text(pen.list, pen.fonts.large, {left + 0.7F * em, 1.6F * em}, colour,
               fmt::format("Errors {}", frame.errors));
-    const ImVec2 dot(right - 3.7F * em, 2.3F * em);
+    const ImVec2 dot(right - (pen.narrow() ? 1.0F : 3.7F) * em, 2.3F * em);
     if (frame.recorder == Recorder::off)
         return;
     const bool fault = frame.recorder == Recorder::fault;
     pen.list.AddCircleFilled(dot, 0.38F * em, fault ? ink::warn : ink::bad, 20);
-    draw_text(pen.list, pen.fonts.body, {dot.x + 0.7F * em, dot.y - 0.6F * em},
-              fault ? ink::warn : ink::quiet, fault ? "REC !" : "REC");
+    if (!pen.narrow())
+        draw_text(pen.list, pen.fonts.body, {dot.x + 0.7F * em, dot.y - 0.6F * em},
+                  fault ? ink::warn : ink::quiet, fault ? "REC !" : "REC");
 }
 
 /// The bar spans 0 .. 1.25 limit: band in green, limit as a red mark, the force as a fill.
@@ -118,9 +124,10 @@ void draw_force(const Pen& pen, const ViewFrame& frame, const ToolView& tool, Im
     draw_text(pen.list, pen.fonts.large,
               {right - text_size(pen.fonts.large, value).x, from.y + 0.35F * em},
               over ? ink::bad : ink::text, value);
-    draw_text(pen.list, pen.fonts.body, {left, from.y + 0.6F * em},
+    const bool below = right - left < 10.0F * em; // no room beside the number
+    draw_text(pen.list, pen.fonts.body, {left, from.y + (below ? 2.0F : 0.6F) * em},
               tool.faulted ? ink::bad : ink::quiet, holder(frame, tool));
-    draw_bar(pen, tool, frame.force, {left, from.y + 2.35F * em}, right - left);
+    draw_bar(pen, tool, frame.force, {left, to.y - 1.35F * em}, right - left);
 }
 
 void draw_forces(const Pen& pen, const ViewFrame& frame) {
@@ -129,11 +136,12 @@ void draw_forces(const Pen& pen, const ViewFrame& frame) {
         std::count_if(frame.tools.begin(), frame.tools.end(), [](auto& t) { return t.present; });
     const float most = (pen.width - 2.0F * em + gap) / 3.0F - gap;
     const float wide = std::min(most, 19.0F * em);
+    const float tall = wide < 14.0F * em ? 5.1F * em : 3.7F * em;
     float x = 0.5F * (pen.width - static_cast<float>(here) * (wide + gap) + gap);
     for (const ToolView& tool : frame.tools) {
         if (!tool.present)
             continue;
-        draw_force(pen, frame, tool, {x, bottom - 3.7F * em}, {x + wide, bottom});
+        draw_force(pen, frame, tool, {x, bottom - tall}, {x + wide, bottom});
         x += wide + gap;
     }
 }
@@ -144,19 +152,38 @@ void draw_messages(const Pen& pen, const ViewFrame& frame, float top_em) {
     constexpr std::size_t kShown = 4;
     const std::size_t n = frame.messages.size();
     for (std::size_t i = n > kShown ? n - kShown : 0; i < n; ++i) {
-        const ImVec2 size = text_size(pen.fonts.body, frame.messages[i]);
-        panel(pen, {em, y}, {2.2F * em + size.x, y + 1.6F * em});
-        draw_text(pen.list, pen.fonts.body, {1.6F * em, y + 0.25F * em}, ink::warn,
-                  frame.messages[i]);
-        y += 1.9F * em;
+        const char* const text = frame.messages[i].c_str();
+        const float wrap = pen.width - 3.2F * em, px = pen.fonts.body->FontSize;
+        const ImVec2 size = pen.fonts.body->CalcTextSizeA(px, wrap, wrap, text);
+        panel(pen, {em, y}, {2.2F * em + size.x, y + 0.5F * em + size.y});
+        pen.list.AddText(pen.fonts.body, px, {1.6F * em, y + 0.25F * em}, ink::warn, text, nullptr,
+                         wrap);
+        y += 0.8F * em + size.y;
     }
     if (frame.forces_on)
         return;
     constexpr std::string_view text = "Forces are off.  F: on again";
-    const ImVec2 size = text_size(pen.fonts.title, text);
-    const float x = 0.5F * pen.width, top = pen.height - 9.6F * em;
+    ImFont* const font = pen.narrow() ? pen.fonts.large : pen.fonts.title;
+    const ImVec2 size = text_size(font, text);
+    const float x = 0.5F * pen.width, top = pen.height - (pen.narrow() ? 10.6F : 9.6F) * em;
     panel(pen, {x - 0.5F * size.x - em, top}, {x + 0.5F * size.x + em, top + 2.8F * em});
-    centred(pen, pen.fonts.title, x, top + 0.35F * em, ink::warn, text);
+    centred(pen, font, x, top + 1.4F * em - 0.5F * size.y, ink::warn, text);
+}
+
+void draw_foot(const Pen& pen, Screen screen) {
+    const float em = pen.em, line = pen.height - 1.55F * em;
+    pen.list.AddRectFilled({0.0F, pen.height - 1.85F * em}, {pen.width, pen.height}, ink::panel);
+    const std::string_view keys =
+        pen.narrow()             ? "P pause   Esc forces off"
+        : screen == Screen::demo ? "P pause   Backspace end   M sound   Esc forces off"
+        : pen.width < 66.0F * em
+            ? "P pause   Tab tool   Esc forces off"
+            : "P pause   Tab next tool   W A S D Q E move   Space jaw   M sound   Esc forces off";
+    const std::string_view notice =
+        pen.narrow() ? "Not a medical device." : "For training. Not a medical device.";
+    draw_text(pen.list, pen.fonts.body, {em, line}, ink::quiet, keys);
+    draw_text(pen.list, pen.fonts.body,
+              {pen.width - em - text_size(pen.fonts.body, notice).x, line}, ink::quiet, notice);
 }
 
 } // namespace
@@ -173,20 +200,12 @@ void draw_hud(const ViewFrame& frame, Screen screen, const Fonts& fonts) {
     draw_next(pen, frame);
     draw_counters(pen, frame);
     draw_forces(pen, frame);
-    draw_messages(pen, frame, screen == Screen::demo ? 7.2F : 4.3F);
-    const float em = pen.em, line = pen.height - 1.55F * em;
-    pen.list.AddRectFilled({0.0F, pen.height - 1.85F * em}, {pen.width, pen.height}, ink::panel);
-    const bool narrow = pen.width < 62.0F * em;
-    const std::string_view keys =
-        screen == Screen::demo ? "P pause   Backspace end   Esc forces off"
-        : narrow               ? "P pause   Tab tool   Esc forces off"
-                 : "P pause   Tab next tool   W A S D Q E move   Space jaw   Esc forces off";
-    draw_text(pen.list, fonts.body, {em, line}, ink::quiet, keys);
-    constexpr std::string_view notice = "For training. Not a medical device.";
-    draw_text(pen.list, fonts.body, {pen.width - em - text_size(fonts.body, notice).x, line},
-              ink::quiet, notice);
+    const float top_em = pen.narrow() ? 3.0F : 0.0F; // the next target stands in a second row
+    draw_messages(pen, frame, top_em + (screen == Screen::demo ? 7.2F : 4.3F));
+    draw_foot(pen, screen);
     if (screen == Screen::demo)
-        centred(pen, fonts.title, 0.5F * pen.width, 4.2F * em, ink::warn, "Demonstration");
+        centred(pen, fonts.title, 0.5F * pen.width, (4.2F + top_em) * pen.em, ink::warn,
+                "Demonstration");
 }
 
 } // namespace view

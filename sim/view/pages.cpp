@@ -39,11 +39,22 @@ void quiet(const std::string& text) {
     ImGui::PopStyleColor();
 }
 
-/// A large button; `first` takes the keyboard when the page appears.
+/// Large letters in a small window leave this page little room: it closes up.
+bool is_narrow() {
+    return ImGui::GetWindowWidth() < 40.0F * ImGui::GetFontSize();
+}
+
+void bullet(const std::string& text) {
+    ImGui::Bullet();
+    ImGui::TextWrapped("%s", text.c_str());
+}
+
+/// A large button, smaller on a narrow page; `first` takes the keyboard when the page appears.
 bool button(const Fonts& fonts, const char* label, bool first, float wide = 11.0F) {
     const float em = ImGui::GetFontSize();
-    ImGui::PushFont(fonts.large);
-    const bool pressed = ImGui::Button(label, {wide * em, 0.0F});
+    const bool narrow = is_narrow();
+    ImGui::PushFont(narrow ? fonts.body : fonts.large);
+    const bool pressed = ImGui::Button(label, {narrow ? 0.0F : wide * em, 0.0F});
     ImGui::PopFont();
     if (first)
         ImGui::SetItemDefaultFocus();
@@ -54,7 +65,9 @@ bool exercise_entry(const Fonts& fonts, const MenuExercise& exercise, int index)
     const float em = ImGui::GetFontSize();
     ImGui::PushID(index);
     const ImVec2 at = ImGui::GetCursorPos();
-    const bool pressed = ImGui::Button("##open", {-1.0F, 4.6F * em});
+    const float wrap = ImGui::GetContentRegionAvail().x - 2.0F * em;
+    const float summary = ImGui::CalcTextSize(exercise.summary.c_str(), nullptr, false, wrap).y;
+    const bool pressed = ImGui::Button("##open", {-1.0F, 3.6F * em + summary});
     if (index == 0)
         ImGui::SetItemDefaultFocus();
     const ImVec2 after = ImGui::GetCursorPos();
@@ -63,8 +76,10 @@ bool exercise_entry(const Fonts& fonts, const MenuExercise& exercise, int index)
     ImGui::TextUnformatted(exercise.title.c_str());
     ImGui::PopFont();
     ImGui::SetCursorPos({at.x + em, at.y + 2.0F * em});
+    ImGui::PushTextWrapPos(at.x + em + wrap);
     ImGui::TextUnformatted(exercise.summary.c_str());
-    ImGui::SetCursorPos({at.x + em, at.y + 3.2F * em});
+    ImGui::PopTextWrapPos();
+    ImGui::SetCursorPos({at.x + em, at.y + 2.2F * em + summary});
     ImGui::TextDisabled("%s", exercise.hands.c_str());
     ImGui::SetCursorPos(after);
     ImGui::PopID();
@@ -121,22 +136,23 @@ void draw_card(const CardModel& card, const Fonts& fonts, bool fresh, UserInput&
     ImGui::Spacing();
     const float em = ImGui::GetFontSize();
     ImGui::BeginChild("words", {0.0F, -3.4F * em});
-    ImGui::PushFont(fonts.large);
+    ImGui::PushFont(is_narrow() ? fonts.body : fonts.large);
     ImGui::TextWrapped("%s", card.text.c_str());
     ImGui::PopFont();
     ImGui::Spacing();
     const ImVec2 row = ImGui::GetCursorScreenPos();
+    const float apart = std::min(9.0F * em, ImGui::GetContentRegionAvail().x / 3.0F);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     for (const Role role : {Role::left, Role::right, Role::assist}) {
-        const float x = row.x + 9.0F * em * static_cast<float>(role);
+        const float x = row.x + apart * static_cast<float>(role);
         draw_badge(list, {x + em, row.y + 0.9F * em}, 0.72F * em, role, role_letter(role));
         draw_text(list, fonts.body, {x + 2.2F * em, row.y + 0.4F * em}, ink::text,
                   std::string(role_word(role)) + " tool");
     }
-    ImGui::Dummy({27.0F * em, 1.8F * em});
+    ImGui::Dummy({3.0F * apart, 1.8F * em});
     ImGui::Spacing();
     for (const std::string& limit : card.limits)
-        ImGui::BulletText("%s", limit.c_str());
+        bullet(limit);
     ImGui::EndChild();
     if (button(fonts, "Start", true))
         input.action = Action::start;
@@ -166,24 +182,24 @@ void draw_pause(const Fonts& fonts, bool fresh, UserInput& input) {
 void metric_row(const ScoreMetric& metric) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(metric.name.c_str());
+    ImGui::TextWrapped("%s", metric.name.c_str());
     ImGui::TableNextColumn();
     if (metric.felt)
-        ImGui::TextUnformatted(
-            fmt::format("{:.{}f} {}", metric.value, metric.decimals, metric.unit).c_str());
+        ImGui::TextWrapped(
+            "%s", fmt::format("{:.{}f} {}", metric.value, metric.decimals, metric.unit).c_str());
     else
-        ImGui::TextDisabled("not felt");
+        quiet("not felt");
     ImGui::TableNextColumn();
     if (metric.directed)
-        ImGui::TextDisabled(metric.lower_is_better ? "less is better" : "more is better");
+        quiet(metric.lower_is_better ? "less is better" : "more is better");
     ImGui::TableNextColumn();
     if (metric.verdict == Verdict::none) {
-        ImGui::TextDisabled("%s", metric.level.c_str());
+        quiet(metric.level);
         return;
     }
     const bool good = metric.verdict == Verdict::good;
     ImGui::PushStyleColor(ImGuiCol_Text, good ? ink::good : ink::bad);
-    ImGui::Text("%s  %s", good ? "reached" : "missed", metric.level.c_str());
+    ImGui::TextWrapped("%s  %s", good ? "reached" : "missed", metric.level.c_str());
     ImGui::PopStyleColor();
 }
 
@@ -197,15 +213,16 @@ void draw_score(const ScoreModel& score, const Fonts& fonts, bool fresh, UserInp
         ImGui::PushStyleColor(ImGuiCol_Text, ink::bad);
         ImGui::TextWrapped("Not valid: the rig was at fault, not the hands.");
         for (const std::string& reason : score.invalid_reasons)
-            ImGui::BulletText("%s", reason.c_str());
+            bullet(reason);
         ImGui::PopStyleColor();
     }
     const float em = ImGui::GetFontSize();
-    ImGui::BeginChild("numbers", {0.0F, -5.0F * em});
-    constexpr ImGuiTableFlags kRows = ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit;
+    const float room = std::max(ImGui::GetContentRegionAvail().y - 5.0F * em, 6.0F * em);
+    ImGui::BeginChild("numbers", {0.0F, room});
+    constexpr ImGuiTableFlags kRows = ImGuiTableFlags_RowBg;
     if (ImGui::BeginTable("metrics", 4, kRows)) {
         for (const float wide : {15.0F, 9.0F, 9.0F, 13.0F})
-            ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, wide * em);
+            ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, wide);
         for (const ScoreMetric& metric : score.metrics)
             metric_row(metric);
         ImGui::EndTable();
@@ -213,7 +230,7 @@ void draw_score(const ScoreModel& score, const Fonts& fonts, bool fresh, UserInp
     ImGui::Spacing();
     ImGui::Text("Errors: %d", static_cast<int>(score.errors.size()));
     for (const ScoreError& error : score.errors)
-        ImGui::BulletText("%.1f s  %s", error.time_s, error.text.c_str());
+        bullet(fmt::format("{:.1f} s  {}", error.time_s, error.text));
     ImGui::EndChild();
     quiet(score.saved.empty() ? "For training, not for credentialing."
                               : score.saved + "  For training, not for credentialing.");

@@ -133,7 +133,7 @@ void Window::Parts::fit_text() {
     float display_scale = 1.0F;
     glfwGetWindowContentScale(frame.window, &display_scale, nullptr);
     const float grown = std::clamp(static_cast<float>(height_px) / 720.0F, 0.85F, 1.6F);
-    const float fits = static_cast<float>(width_px) / 42.0F; // the force bars need 42 letters
+    const float fits = static_cast<float>(width_px) / 28.0F; // the force bars need 28 letters
     const float wish =
         kBody_px * std::max(1.0F, display_scale) * grown * static_cast<float>(text_scale);
     const float body_px = std::round(std::clamp(wish, 8.0F, std::max(12.0F, fits)));

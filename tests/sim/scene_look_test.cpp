@@ -2,6 +2,8 @@
 // The key `look` of a scene's organs.
 #include "scene_fixture.h"
 
+#include <fmt/format.h>
+
 using namespace scene_tests;
 
 namespace {
