@@ -17,15 +17,18 @@ namespace {
 struct TrainArguments {
     std::string exercise, scene = "basic", trainee, log, shots;
     double shot_seconds = 4.0;
+    bool mute = false;
     int font_percent = 100, width = 1280, height = 720;
 };
 
 class Trainer {
   public:
     explicit Trainer(const TrainArguments& a)
-        : a_(a),
-          window_(
-              {.width_px = a.width, .height_px = a.height, .text_scale = 0.01 * a.font_percent}),
+        : a_(a), window_({.width_px = a.width,
+                          .height_px = a.height,
+                          .text_scale = 0.01 * a.font_percent,
+                          .sound = a.shots.empty(),
+                          .mute = a.mute}),
           logbook_(a.log.empty() ? (user_data_dir() / "station.db").string() : a.log),
           log_path_(a.log.empty() ? (user_data_dir() / "station.db").string() : a.log) {
         const ScenePlace place = find_scene(a.scene);
@@ -207,6 +210,7 @@ void add_train(CLI::App& app, int&) {
     c->add_option("--log", a->log, "Logbook; default: the user's data directory");
     c->add_option("--font-percent", a->font_percent, "Size of all text; Ctrl + and Ctrl - too")
         ->check(CLI::Range(100, 200));
+    c->add_flag("--mute", a->mute, "No sound until M is pressed");
     c->add_option("--width", a->width, "Of the window, pixels")->check(CLI::Range(800, 7680));
     c->add_option("--height", a->height, "Of the window, pixels")->check(CLI::Range(600, 4320));
     c->add_option("--screenshots", a->shots, "Folder: take pictures of every screen and leave");

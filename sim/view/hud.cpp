@@ -118,6 +118,9 @@ void draw_force(const Pen& pen, const ViewFrame& frame, const ToolView& tool, Im
         pen.list.AddRect(from, to, role_ink(tool.role), 6.0F, 0, 2.5F);
     draw_badge(pen.list, {from.x + 1.6F * em, from.y + 1.9F * em}, 0.9F * em, tool.role,
                role_letter(tool.role));
+    if (tool.touching) // what the tick says to the ear
+        pen.list.AddCircle({from.x + 1.6F * em, from.y + 1.9F * em}, 1.35F * em, ink::text, 32,
+                           0.12F * em);
     const float left = from.x + 3.1F * em, right = to.x - 0.9F * em;
     const std::string value = fmt::format("{:.2f} N", glm::length(tool.force_n));
     const bool over = glm::length(tool.force_n) > frame.force.limit_n;

@@ -50,6 +50,7 @@ UserInput map_keys(const KeyFrame& keys, Screen screen, bool widgets_have_keys) 
             (keys.is_pressed(Key::plus) ? 1 : 0) - (keys.is_pressed(Key::minus) ? 1 : 0);
         return input;
     }
+    input.toggle_sound = keys.is_pressed(Key::m);
     if (screen != Screen::run)
         return input;
     input.switch_tool = keys.is_pressed(Key::tab);

@@ -10,6 +10,7 @@
 //   A D, S W, Q E  the active tool left right, down up, away nearer
 //   R T            roll left, right         Space or left button  close the jaw
 //   Ctrl+Q         quit                     Ctrl + and -  larger and smaller text
+//   M              sound off and on
 #pragma once
 
 #include "sim/view/screens.h"
@@ -48,6 +49,7 @@ struct UserInput {
     double wheel = 0.0;           // notches, positive away from the person
     std::array<bool, 3> button{}; // left, right, middle held
     int text_step = 0;            // Ctrl + and -: done by the window itself, for information
+    bool toggle_sound = false;    // M went down: done by the window itself, for information
 };
 
 enum class Key {
@@ -68,6 +70,7 @@ enum class Key {
     t,
     f,
     p,
+    m,
     shift,
     control,
     count

@@ -32,6 +32,7 @@ std::optional<Key> key_of(int glfw_key) noexcept {
                                               {GLFW_KEY_T, Key::t},
                                               {GLFW_KEY_F, Key::f},
                                               {GLFW_KEY_P, Key::p},
+                                              {GLFW_KEY_M, Key::m},
                                               {GLFW_KEY_LEFT_SHIFT, Key::shift},
                                               {GLFW_KEY_RIGHT_SHIFT, Key::shift},
                                               {GLFW_KEY_LEFT_CONTROL, Key::control},

@@ -12,6 +12,7 @@
 #include "sim/view/picture.h"
 #include "sim/view/png.h"
 #include "sim/view/resolution.h"
+#include "sim/view/sound.h"
 
 #include <chrono>
 #include <optional>
@@ -97,7 +98,8 @@ struct Widgets {
 struct Window::Parts {
     explicit Parts(const WindowOptions& options)
         : frame(options), keyboard(frame.window), widgets(frame.window),
-          text_scale(std::clamp(options.text_scale, 1.0, 2.0)), adapt(options.adapt) {
+          text_scale(std::clamp(options.text_scale, 1.0, 2.0)), adapt(options.adapt),
+          speaker(options.sound, options.mute) {
         const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
         cost.renderer = name != nullptr ? name : "unknown";
         // smooth edges cost a software renderer most of its time
@@ -108,6 +110,7 @@ struct Window::Parts {
 
     void fit_text();
     void draw_world(const ViewFrame& shown);
+    void sound(const ViewFrame& shown, Screen screen);
     UserInput draw_widgets(const ViewFrame& shown, const Screens& screens);
 
     Frame frame; // first in, last out
@@ -122,6 +125,8 @@ struct Window::Parts {
     float loaded_px = 0.0F;
     int samples = 0, width_px = 0, height_px = 0;
     bool adapt = true;
+    Listener listener;
+    Speaker speaker;
     Resolution resolution;
     std::optional<Screen> last_screen;
     Clock::time_point last_draw = Clock::now();
@@ -162,6 +167,14 @@ void Window::Parts::draw_world(const ViewFrame& shown) {
     page.bind();
     optics.draw(samples > 0 ? smooth : world, lens,
                 static_cast<double>(width_px) / std::max(1, height_px));
+}
+
+/// Only what runs sounds.
+void Window::Parts::sound(const ViewFrame& shown, Screen screen) {
+    if (screen == Screen::run || screen == Screen::demo)
+        speaker.play(listener.hear(shown));
+    else if (screen != Screen::paused)
+        listener.forget();
 }
 
 UserInput Window::Parts::draw_widgets(const ViewFrame& shown, const Screens& screens) {
@@ -224,6 +237,9 @@ UserInput Window::draw(const ViewFrame& frame, const Screens& screens) {
     } else {
         input = map_keys(p.keyboard.take_keys(), screens.screen);
     }
+    p.sound(frame, screens.screen);
+    if (input.toggle_sound)
+        p.speaker.toggle();
     p.text_scale = std::clamp(p.text_scale + 0.1 * input.text_step, 1.0, 2.0);
     if (glfwWindowShouldClose(p.frame.window) == GLFW_TRUE)
         input.action = Action::quit;

@@ -27,6 +27,8 @@ struct WindowOptions {
     bool wait_for_screen = true; // vertical sync; false: draw() returns at once (measurements)
     bool adapt = true;           // false: always full resolution (measurements)
     double text_scale = 1.0;     // 1.0 .. 2.0
+    bool sound = false;          // silent anyway where there is no loudspeaker
+    bool mute = false;           // silent until the person presses M
 };
 
 /// What drawing costs; the first two smoothed over about 20 frames.
