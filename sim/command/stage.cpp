@@ -1,6 +1,8 @@
 // sim/command/stage.cpp
 #include "sim/command/stage.h"
 
+#include "tasks/exercise/path_curve.h"
+
 #include <algorithm>
 #include <cstdlib>
 #include <fmt/format.h>
@@ -110,6 +112,41 @@ void Stage::show_targets(const TargetPlaces& target_um, const ProgressNow& progr
     }
 }
 
+// Of the points of a path only the first, the last and the one that comes now keep their marks.
+void Stage::show_path(const ProgressNow& progress) {
+    if (session_.exercise.kind != tasks::ExerciseKind::follow_path || frame_.targets.size() < 2)
+        return;
+    view::PathView& path = frame_.path;
+    path.role = frame_.targets.front().role;
+    path.radius_m = session_.exercise.radius_m;
+    path.place_m.clear();
+    path.normal.clear();
+    std::vector<glm::dvec3> points;
+    for (const view::TargetView& target : frame_.targets)
+        points.push_back(target.position_m);
+    const int last = static_cast<int>(points.size()) - 1;
+    const int pieces = tasks::kPiecesPerPoint * last;
+    for (int i = 0; i <= pieces; ++i) {
+        const double u = static_cast<double>(i) / tasks::kPiecesPerPoint;
+        const auto k = static_cast<std::size_t>(u);
+        const glm::dvec3& n0 = frame_.targets[k].normal;
+        const glm::dvec3& n1 = frame_.targets[std::min(k + 1, points.size() - 1)].normal;
+        path.place_m.push_back(tasks::curve_at(points, u));
+        path.normal.push_back(glm::normalize(glm::mix(n0, n1, u - static_cast<double>(k))));
+    }
+    const double passed =
+        progress.complete ? last : std::max(0.0, progress.next_target - 1 + progress.hold_share);
+    path.done = std::min(1.0, passed / last);
+    std::erase_if(frame_.targets, [&](const view::TargetView& target) {
+        return target.number != 1 && target.number != last + 1 &&
+               target.state != view::TargetState::next;
+    });
+    for (view::TargetView& target : frame_.targets) {
+        target.radius_m = 3e-3; // the corridor is the ribbon's to show
+        target.hold_share = 0.0;
+    }
+}
+
 const view::ViewFrame& Stage::frame(Exchange& exchange) {
     const SurfaceNow& surface = exchange.surface.latest();
     if (surface.step >= 0) {
@@ -121,6 +158,7 @@ const view::ViewFrame& Stage::frame(Exchange& exchange) {
     progress_ = exchange.progress_seen.latest();
     show_tools(exchange.tools_seen.latest());
     show_targets(surface.step >= 0 ? surface.target_um : session_.rest_target_um, progress_);
+    show_path(progress_);
     frame_.errors = progress_.errors;
     frame_.forces_on = !exchange.zero_forces.load();
     frame_.recorder = session_.recorded ? view::Recorder::recording : view::Recorder::off;

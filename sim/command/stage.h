@@ -22,6 +22,7 @@ class Stage {
   private:
     void show_tools(const ToolsNow& now);
     void show_targets(const TargetPlaces& target_um, const ProgressNow& progress);
+    void show_path(const ProgressNow& progress);
 
     const Session& session_;
     bool by_hand_;

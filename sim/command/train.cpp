@@ -43,7 +43,10 @@ class Trainer {
             screens_.menu.exercises.push_back(
                 {.title = exercises_.back().title,
                  .hands = "left, right, assist",
-                 .summary = fmt::format("{} targets", exercises_.back().target.size())});
+                 .summary = fmt::format("{} {}", exercises_.back().target.size(),
+                                        exercises_.back().kind == tasks::ExerciseKind::follow_path
+                                            ? "points of a path"
+                                            : "targets")});
         }
         for (const auto& t : logbook_.trainees()) {
             trainee_ids_.push_back(t.id);
@@ -77,7 +80,7 @@ class Trainer {
     /// Pictures of every screen, for the README and for tests: no person needed.
     void take_pictures() {
         picture("menu");
-        show_card(0);
+        show_card(chosen_);
         picture("card");
         perform(true);
         picture("score");

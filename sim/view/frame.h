@@ -63,6 +63,15 @@ struct TargetView {
     double hold_share = 0.0; // 0..1 of the holding time, for the next target
 };
 
+/// A curve on the surface that has to be drawn along: places in order, close enough to each other
+/// to look smooth. Empty: none.
+struct PathView {
+    Role role = Role::right;
+    std::vector<glm::dvec3> place_m, normal; // on the surface now; unit
+    double radius_m = 4e-3;                  // the exercise's corridor
+    double done = 0.0;                       // share of the places, 0..1
+};
+
 struct Camera {
     glm::dvec3 eye_m{0.0, -0.075, 0.19};
     glm::dvec3 look_at_m{0.0, 0.0, 0.01};
@@ -84,6 +93,7 @@ struct ViewFrame {
     std::vector<SurfaceView> surfaces;
     std::array<ToolView, kTools> tools;
     std::vector<TargetView> targets;
+    PathView path;
     Camera camera;
     ForceLimits force;
     double time_s = 0.0;       // of the attempt: the timer, and the beat of the pulsing ring

@@ -54,7 +54,9 @@ void draw_next(const Pen& pen, const ViewFrame& frame) {
                fmt::format("{}", next->number));
     draw_text(pen.list, pen.fonts.large, {x - half + 3.4F * em, top + 0.6F * em}, ink::text,
               fmt::format("{} tool", role_word(next->role)));
-    const std::string share = fmt::format("{} / {}", done, frame.targets.size());
+    const std::string share = frame.path.place_m.empty()
+                                  ? fmt::format("{} / {}", done, frame.targets.size())
+                                  : fmt::format("{:.0f} %", 100.0 * frame.path.done);
     draw_text(pen.list, pen.fonts.body,
               {x + half - 0.8F * em - text_size(pen.fonts.body, share).x, top + 0.8F * em},
               ink::quiet, share);

@@ -83,8 +83,9 @@ Picture::Picture()
               make_tissue(true, true)},
       tool_("tool", shaders::prelude, shaders::tool_vertex, shaders::tool_fragment),
       target_("target", shaders::prelude, shaders::target_vertex, shaders::target_fragment),
+      path_("path", shaders::prelude, shaders::path_vertex, shaders::path_fragment),
       noise_(noise_texture()), cylinder_(make_solid(false)), ball_(make_solid(true)),
-      square_(make_vertex_array()) {}
+      ribbon_(make_vertex_array()), ribbon_places_(make_buffer()), square_(make_vertex_array()) {}
 
 /// A unit ball, or a unit cylinder with closed ends, z 0..1; positions and normals interleaved.
 Picture::Solid Picture::make_solid(bool ball) {
@@ -238,6 +239,7 @@ void Picture::draw(const ViewFrame& frame, const Digits& digits, const Lens& len
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     draw_tools(frame, to_clip); // nearest first: what they hide is never shaded
     draw_tissue(frame, to_clip);
+    draw_path(frame, to_clip);
     draw_targets(frame, digits, to_clip);
     glBindVertexArray(0);
 }

@@ -50,13 +50,16 @@ class Picture {
     void draw_surface(const ViewFrame& frame, std::size_t index, const glm::mat4& to_clip);
     void draw_tools(const ViewFrame& frame, const glm::mat4& to_clip);
     void draw_targets(const ViewFrame& frame, const Digits& digits, const glm::mat4& to_clip);
+    void draw_path(const ViewFrame& frame, const glm::mat4& to_clip);
     void draw_target(const ViewFrame& frame, const TargetView& target, const Digits& digits,
                      bool hidden);
 
     std::array<Program, 4> tissue_; // see tissue_program()
-    Program tool_, target_;
+    Program tool_, target_, path_;
     Texture noise_;
     Solid cylinder_, ball_;
+    VertexArray ribbon_;
+    Buffer ribbon_places_;
     VertexArray square_; // no attributes: corners come from gl_VertexID
     std::map<int, Uploaded> surface_;
     Lens lens_;

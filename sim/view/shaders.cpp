@@ -153,6 +153,40 @@ void main() {
 }
 )";
 
+const char* const path_vertex = R"(
+layout(location = 0) in vec3 place_m;
+layout(location = 1) in vec2 on_path; // across -1..1, along in places
+uniform mat4 to_clip;
+uniform float lift_m;        // in depth only, as of targets
+out vec2 at;
+void main() {
+    at = on_path;
+    vec4 here = to_clip * vec4(place_m, 1.0);
+    vec4 near = to_clip * vec4(place_m + lift_m * normalize(eye_m - place_m), 1.0);
+    gl_Position = vec4(here.xy, near.z / near.w * here.w, here.w);
+}
+)";
+
+const char* const path_fragment = R"(
+in vec2 at;
+uniform vec3 base;
+uniform float done;          // in places
+uniform float opacity;
+out vec4 colour;
+void main() {
+    float px = max(fwidth(at.x), 1e-4);
+    float side = abs(at.x);
+    float line = 1.0 - smoothstep(0.20 - px, 0.20 + px, side);
+    float halo = 1.0 - smoothstep(0.34 - px, 0.34 + px, side); // dark, so that it reads on any tissue
+    float rim = smoothstep(0.90 - px, 0.90 + px, side) * 0.45;
+    bool passed = at.y < done;
+    vec3 drawn = passed ? vec3(0.62) : base;
+    vec3 c = mix(vec3(0.05), drawn, max(line, rim > 0.0 ? 1.0 : 0.0));
+    float a = max(max(line, 0.75 * halo), max(rim, 0.06)) * (passed ? 0.6 : 1.0);
+    colour = vec4(c, a * opacity);
+}
+)";
+
 const char* const target_vertex = R"(
 uniform mat4 to_clip;
 uniform vec3 centre_m;

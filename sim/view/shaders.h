@@ -12,6 +12,8 @@ extern const char* const tool_vertex;
 extern const char* const tool_fragment;
 extern const char* const target_vertex;
 extern const char* const target_fragment;
+extern const char* const path_vertex;
+extern const char* const path_fragment;
 extern const char* const lens_vertex; // these two want no prelude but a version
 extern const char* const lens_fragment;
 
