@@ -154,7 +154,7 @@ void Window::Parts::draw_world(const ViewFrame& shown) {
     const Lens lens = lens_of(width_px, height_px);
     const double half_px = 0.5 * resolution.share() * height_px;
     const auto side = [&](double reach) { // even like most windows: then the middle stays sharp
-        return 2 * std::max(1, static_cast<int>(std::lround(half_px * reach)));
+        return 2 * std::max(1, static_cast<int>(std::ceil(half_px * reach)));
     };
     world.resize(side(lens.reach.x), side(lens.reach.y), samples, true);
     page.resize(width_px, height_px, 0, false);

@@ -85,10 +85,43 @@ TEST_CASE("The picture shrinks when drawing is slow, never under 800 x 600, and 
         CHECK(resolution.share() * w >= std::min(w, 800) - 1e-9);
         CHECK(resolution.share() * h >= std::min(h, 600) - 1e-9);
         CHECK(resolution.share() == Resolution::least_share(w, h)); // used all that is allowed
-        for (int i = 0; i < 2000; ++i)
+        for (int i = 0; i < 4000; ++i)
             resolution.observe(5.0, w, h);
         CHECK(resolution.share() == 1.0);
     }
+}
+
+TEST_CASE("On any machine the picture comes to rest, quick enough or as small as is allowed") {
+    CHECK(rc::check([] {
+        const int w = *rc::gen::inRange(800, 4000), h = *rc::gen::inRange(600, 2200);
+        const double full_ms = *rc::gen::inRange(2, 400), always_ms = *rc::gen::inRange(0, 8);
+        Resolution resolution;
+        int changes = 0;
+        for (int i = 0; i < 8000; ++i) {
+            const double before = resolution.share();
+            resolution.observe(always_ms + full_ms * before * before, w, h);
+            RC_ASSERT(resolution.share() * w >= 800.0 - 1e-9);
+            RC_ASSERT(resolution.share() * h >= 600.0 - 1e-9);
+            changes += i >= 4000 && resolution.share() != before ? 1 : 0;
+        }
+        const double share = resolution.share();
+        RC_ASSERT(changes == 0);
+        RC_ASSERT(always_ms + full_ms * share * share <= Resolution::kSlow_ms ||
+                  share == Resolution::least_share(w, h));
+    }));
+}
+
+TEST_CASE("A machine on the brink changes size ever more rarely") {
+    Resolution resolution;
+    int early = 0, late = 0;
+    for (int i = 0; i < 20000; ++i) { // too slow for one size, far too quick for the next smaller
+        const double before = resolution.share();
+        resolution.observe(before > 0.95 ? 40.0 : 8.0, 1920, 1080);
+        const int changed = resolution.share() != before ? 1 : 0;
+        (i < 4000 ? early : late) += changed;
+    }
+    CHECK(early > 0);
+    CHECK(late < 4 * early); // in four times the time
 }
 
 TEST_CASE("The clock shows a second only when it is over") {
