@@ -62,6 +62,7 @@ struct ToolsNow {
     std::array<double, kTools> jaw{}, roll_rad{};
     std::array<glm::dvec3, kTools> force_n{}; // on the tip, world
     std::array<bool, kTools> touching{};
+    std::array<bool, kTools> grasping{};     // jaws hold tissue
     std::array<double, kTools> felt_share{}; // ramp and limits: 0 limp .. 1 full force
     std::array<bool, kTools> faulted{};
 };

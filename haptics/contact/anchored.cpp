@@ -28,6 +28,7 @@ StepResult as_published(const RunningModel& model) noexcept {
         const ToolPatch& patch = model.answer->tool[i];
         const SurfacePoint& at = patch.contact;
         result.touching[i] = patch.near && patch.memory.touching && at.triangle >= 0;
+        result.grasping[i] = result.touching[i] && patch.memory.grasped;
         if (!result.touching[i])
             continue;
         const auto& corner = patch.triangle[at.triangle].vertex;
@@ -44,11 +45,11 @@ StepResult step_to(RunningModel& model, const CouplingConfig& config, const Pose
                              : as_published(model);
 }
 
-// The model's force and what is left of an earlier jump. Never pulls; out of contact the jump is
-// dropped, or it would be felt as a ghost.
-glm::dvec3 eased_force(Easing& easing, const glm::dvec3& force_n, const glm::dvec3& normal,
-                       bool touching) noexcept {
-    if (!touching) {
+// The model's force and what is left of an earlier jump. Never pulls unless grasped; out of contact
+// the jump is dropped, or it would be felt as a ghost.
+glm::dvec3 eased_force(Easing& easing, const glm::dvec3& force_n, const StepResult& step,
+                       int tool) noexcept {
+    if (!step.touching[tool]) {
         easing = {};
         return glm::dvec3{0.0};
     }
@@ -57,15 +58,16 @@ glm::dvec3 eased_force(Easing& easing, const glm::dvec3& force_n, const glm::dve
     const double share = static_cast<double>(easing.ticks_left) / easing.ticks_total;
     --easing.ticks_left;
     const glm::dvec3 total_n = force_n + share * easing.offset_n;
-    return total_n - normal * std::min(0.0, glm::dot(normal, total_n));
+    const glm::dvec3& normal = step.normal[tool];
+    return step.grasping[tool] ? total_n
+                               : total_n - normal * std::min(0.0, glm::dot(normal, total_n));
 }
 
 std::array<glm::dvec3, kTools> eased_forces(CouplingState& state, const RunningModel& model,
                                             const StepResult& step) noexcept {
     std::array<glm::dvec3, kTools> force_n{};
     for (int i = 0; i < kTools; ++i)
-        force_n[i] =
-            eased_force(state.easing[i], model.force_n[i], step.normal[i], step.touching[i]);
+        force_n[i] = eased_force(state.easing[i], model.force_n[i], step, i);
     return force_n;
 }
 
@@ -76,6 +78,7 @@ void adopt(CouplingState& state, const LocalModels& answer) noexcept {
     model = {.answer = &answer, .tick = answer.sample_tick, .rate = answer.rate};
     for (int i = 0; i < kTools; ++i) {
         const ToolPatch& patch = answer.tool[i];
+        model.closing[i] = patch.closing;
         if (!patch.near)
             continue;
         model.contact[i] = patch.contact;
@@ -104,6 +107,7 @@ CouplingResult anchored_tick(CouplingState& state, const CouplingConfig& config,
         for (int i = 0; i < kTools; ++i) {
             const glm::dvec3 jump_n = result.force_n[i] - state.pending.force_n[i];
             const bool ease = had_model && step.touching[i] && fresh.touching[i] &&
+                              step.grasping[i] == fresh.grasping[i] &&
                               glm::length(jump_n) > config.ease_above_n;
             state.easing[i] =
                 ease ? Easing{jump_n, config.period_ticks, config.period_ticks} : Easing{};
@@ -116,6 +120,7 @@ CouplingResult anchored_tick(CouplingState& state, const CouplingConfig& config,
     }
 
     result.touching = step.touching;
+    result.grasping = step.grasping;
     result.slid_off = step.slid_off;
     result.solve_residual_m = step.solve_residual_m;
     return result;

@@ -89,6 +89,16 @@ double tangential_compliance(const LocalLaw& law, double x) noexcept {
     return std::max(t.tangential_m2pn / radius + law.tangential_mpn, law.floor_mpn);
 }
 
+GraspCompliance grasp_compliance(const LocalLaw& law) noexcept {
+    const IndenterTable& t = *law.table;
+    const Level level = level_of(t, law.radius_over_thickness);
+    const double x = (IndenterTable::kEntries - 1) * t.x_step;
+    const double grown_m = lookup(t.contact_radius_m, level, x, t.x_step).value;
+    const double punch_mpn = end_of(t, level).slope_mpn * grown_m / kHeldRadius_m;
+    return {std::max(punch_mpn + law.normal_mpn, law.floor_mpn),
+            std::max(t.tangential_m2pn / kHeldRadius_m + law.tangential_mpn, law.floor_mpn)};
+}
+
 double contact_radius(const LocalLaw& law, double x) noexcept {
     if (!law.table)
         return 0.0;

@@ -47,6 +47,17 @@ LawPoint law_at(const LocalLaw& law, double x) noexcept;
 /// Tangential compliance in m/N at normal-force coordinate x, never below the floor.
 double tangential_compliance(const LocalLaw& law, double x) noexcept;
 
+/// The disc by which jaws hold skin: of the area of a face, 16 x 5 mm. Design value.
+inline constexpr double kHeldRadius_m = 5e-3;
+
+/// Compliances in m/N of a disc of that radius stuck to the skin, beyond what the tissue model
+/// itself yields: the law's flat punch, scaled by the radius. Needs a table.
+struct GraspCompliance {
+    double normal_mpn;
+    double tangential_mpn;
+};
+GraspCompliance grasp_compliance(const LocalLaw& law) noexcept;
+
 /// Radius of the contact disc at x, m; of a rigid body 0.
 double contact_radius(const LocalLaw& law, double x) noexcept;
 

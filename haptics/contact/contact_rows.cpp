@@ -1,6 +1,7 @@
 #include "haptics/contact/contact_rows.h"
 
 #include "haptics/contact/coulomb_disc.h"
+#include "haptics/contact/grasp.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,10 +69,13 @@ struct Contact {
     glm::dvec3 offset_m{0.0}; // p - y_free
     glm::dvec3 before_n{0.0}; // friction carried over
     glm::dvec3 lag_m{0.0};    // lag carried over
+    double stand_m = 0.0; // height of the tip over the skin at which it neither presses nor pulls
     glm::dvec3 others_m{0.0}; // what the other tools push here
     glm::dvec3 force_n{0.0};
     double x = 0.0;
     double multiplier = 0.0;
+    bool grasped = false;
+    GraspCompliance held{};
 };
 
 Contact make_contact(const ContactRow& row, const ContactMemory& memory) noexcept {
@@ -79,6 +83,15 @@ Contact make_contact(const ContactRow& row, const ContactMemory& memory) noexcep
     c.frame = contact_frame(row.normal);
     c.offset_m = (row.tip_m - row.surface_free_m) * c.frame; // v * M = M^T v
     c.x = memory.touching ? memory.x : 0.0;
+    c.stand_m = row.tip_radius_m;
+    if (memory.grasped) {
+        c.grasped = true;
+        c.held = grasp_compliance(row.law);
+        c.lag_m = memory.grip_m * c.frame;
+        c.stand_m = c.lag_m.z;
+        c.lag_m.z = 0.0;
+        return c;
+    }
     if (memory.touching && row.friction > 0.0) {
         c.before_n = tangential(memory.friction_n, row.normal) * c.frame;
         c.lag_m = tangential(memory.lag_m, row.normal) * c.frame;
@@ -98,17 +111,40 @@ glm::dvec2 stick_side(const Contact& c, const glm::dmat3& own, double compliance
            glm::dvec2{own[2]} * normal_n;
 }
 
+double tangential_of(const ContactRow& row, const Contact& c) noexcept {
+    return c.grasped ? c.held.tangential_mpn : tangential_compliance(row.law, c.x);
+}
+
+// What the force across the normal may reach.
+double tangential_limit(const ContactRow& row, const Contact& c) noexcept {
+    return c.grasped ? row.hold_n : row.friction * c.force_n.z;
+}
+
+// A grasp in tension: all three rows at once.
+void solve_pull(const ContactRow& row, const glm::dmat3& own, Contact& c) noexcept {
+    glm::dmat3 A = own;
+    A[0][0] += c.held.tangential_mpn;
+    A[1][1] += c.held.tangential_mpn;
+    A[2][2] += c.held.normal_mpn;
+    const glm::dvec3 grip_m{c.lag_m.x, c.lag_m.y, c.stand_m};
+    const PullPoint pull = pull_minimum(A, grip_m - c.offset_m - c.others_m, row.hold_n);
+    c.force_n = pull.f;
+    c.multiplier = pull.multiplier;
+    c.x = 0.0;
+}
+
 // Normal law, then Coulomb disc, each exact for what the other and the other tools do now.
 void solve_block(const ContactRow& row, const glm::dmat3& own, Contact& c) noexcept {
-    const double reach_m = row.tip_radius_m - c.offset_m.z - c.others_m.z -
-                           own[0][2] * c.force_n.x - own[1][2] * c.force_n.y;
+    const double reach_m =
+        c.stand_m - c.offset_m.z - c.others_m.z - own[0][2] * c.force_n.x - own[1][2] * c.force_n.y;
+    if (c.grasped && !(reach_m > 0.0))
+        return solve_pull(row, own, c);
     c.x = normal_root(row.law, own[2][2], reach_m, c.x);
     c.force_n.z = law_at(row.law, c.x).force_n;
 
-    const double soft = tangential_compliance(row.law, c.x);
-    const DiscPoint stick =
-        disc_minimum(tangent_block(own, soft), stick_side(c, own, soft, c.force_n.z),
-                     row.friction * c.force_n.z);
+    const double soft = tangential_of(row, c);
+    const DiscPoint stick = disc_minimum(
+        tangent_block(own, soft), stick_side(c, own, soft, c.force_n.z), tangential_limit(row, c));
     c.force_n.x = stick.f.x;
     c.force_n.y = stick.f.y;
     c.multiplier = stick.multiplier;
@@ -117,13 +153,16 @@ void solve_block(const ContactRow& row, const glm::dmat3& own, Contact& c) noexc
 // How far the block's equations are from holding, now that the other tools have moved on.
 double block_residual_m(const ContactRow& row, const glm::dmat3& own, const Contact& c) noexcept {
     const glm::dvec3 offset_m = c.offset_m + c.others_m + own * c.force_n;
-    const double gap_m = offset_m.z - row.tip_radius_m + law_at(row.law, c.x).depth_m;
+    double gap_m = offset_m.z - c.stand_m + law_at(row.law, c.x).depth_m;
     if (!std::isfinite(c.x))
         return std::numeric_limits<double>::infinity();
-    const double normal_m = c.x > 0.0 ? std::abs(gap_m) : std::max(0.0, -gap_m);
-    if (!(row.friction * c.force_n.z > 0.0))
+    if (c.force_n.z < 0.0)
+        gap_m += (c.held.normal_mpn + c.multiplier) * c.force_n.z;
+    const bool closed = c.x > 0.0 || c.grasped;
+    const double normal_m = closed ? std::abs(gap_m) : std::max(0.0, -gap_m);
+    if (!(tangential_limit(row, c) > 0.0))
         return normal_m;
-    const double soft = tangential_compliance(row.law, c.x);
+    const double soft = tangential_of(row, c);
     const glm::dvec2 slip = glm::dvec2{offset_m - c.lag_m + soft * (c.force_n - c.before_n)} +
                             c.multiplier * glm::dvec2{c.force_n};
     return std::max(normal_m, glm::length(slip));
@@ -137,9 +176,11 @@ bool all_finite(const ContactProblem& problem,
         const ContactRow& r = problem.row[i];
         if (!r.active)
             continue;
-        sum += r.tip_m + r.surface_free_m + r.normal + memory[i].friction_n + memory[i].lag_m;
-        sum.x += r.tip_radius_m + r.friction + memory[i].x + r.law.radius_over_thickness +
-                 r.law.normal_mpn + r.law.tangential_mpn + r.law.floor_mpn;
+        sum += r.tip_m + r.surface_free_m + r.normal + memory[i].friction_n + memory[i].lag_m +
+               memory[i].grip_m;
+        sum.x += r.hold_n + memory[i].out_m + r.tip_radius_m + r.friction + memory[i].x +
+                 r.law.radius_over_thickness + r.law.normal_mpn + r.law.tangential_mpn +
+                 r.law.floor_mpn;
         for (int j = 0; j < kTools; ++j)
             if (problem.row[j].active)
                 for (int k = 0; k < 3; ++k)
@@ -168,6 +209,21 @@ glm::dvec3 settle(const ContactRow& row, const glm::dmat3& own, const Contact& c
     memory.lag_m = c.frame * glm::dvec3{lag_m, 0.0};
     const bool sticks = c.multiplier == 0.0 && !too_long;
     return sticks ? glm::dvec3{0.0} : c.frame * glm::dvec3{ahead_m - lag_m, 0.0};
+}
+
+// What a grasp takes along: slip across the normal is the material point's, slip along it has
+// left the jaws.
+glm::dvec3 settle_grasp(const glm::dmat3& own, const Contact& c, ContactMemory& memory) noexcept {
+    const glm::dvec3 slip_m = -c.multiplier * c.force_n;
+    const double out_m = c.force_n.z < 0.0 ? slip_m.z : 0.0;
+    const glm::dvec3 offset_m = c.offset_m + c.others_m + own * c.force_n - slip_m;
+    memory.touching = true;
+    memory.x = c.x;
+    memory.friction_n = c.frame * glm::dvec3{glm::dvec2{c.force_n}, 0.0};
+    memory.lag_m = c.frame * glm::dvec3{glm::dvec2{offset_m}, 0.0};
+    memory.grip_m += c.frame[2] * out_m;
+    memory.out_m += out_m;
+    return c.frame * glm::dvec3{glm::dvec2{slip_m}, 0.0};
 }
 
 // The contacts of one problem, numbered among the active tools.
@@ -246,7 +302,14 @@ ContactSolution solve_contact(const ContactProblem& problem,
         for (int a = 0; a < s.count; ++a) {
             const int i = s.tool[a];
             solution.force_n[i] = s.contact[a].frame * s.contact[a].force_n;
-            solution.slip_m[i] = settle(problem.row[i], s.W[a][a], s.contact[a], after[i]);
+            if (!s.contact[a].grasped) {
+                solution.slip_m[i] = settle(problem.row[i], s.W[a][a], s.contact[a], after[i]);
+                continue;
+            }
+            after[i] = memory[i];
+            solution.slip_m[i] = settle_grasp(s.W[a][a], s.contact[a], after[i]);
+            if (after[i].out_m > kBite_m)
+                release_grasp(after[i]);
         }
     memory = after;
     return solution;

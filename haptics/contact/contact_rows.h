@@ -1,13 +1,14 @@
 // haptics/contact/contact_rows.h
-// Unilateral, frictional contact of up to three tools, solved in compliance form. One function
-// for both loops: the FEM step hands in rows condensed through its factor, the 1 kHz tick rows
-// condensed through the modes of the local model.
+// Unilateral, frictional or grasping contact of up to three tools, solved in compliance form. One
+// function for both loops: the FEM step hands in rows condensed through its factor, the 1 kHz tick
+// rows condensed through the modes of the local model.
 //
 // Per tool, world axes. W is the compliance of the surface points under the tools: a force F on
 // the TOOL (so -F on the tissue) moves surface point i by -sum_j W_ij F_j. With gap normal n
 // (out of the tissue), y = y_free - W F, tip centre p and tip radius a:
 //   depth  = a - n.(p - y) = law(P),  P = n.F >= 0            (never pulls)
 //   stick:  C_t dF_t = -d(p - y)_t   while |F_t| <= mu P;   slip: |F_t| = mu P along the motion
+// A contact that jaws hold pulls as well: haptics/contact/grasp.h.
 #pragma once
 
 #include "haptics/contact/contact_law.h"
@@ -27,6 +28,7 @@ struct ContactRow {
     glm::dvec3 normal{0.0, 0.0, 1.0}; // unit, out of the tissue
     double tip_radius_m = 0.0;
     double friction = 0.0; // Coulomb coefficient
+    double hold_n = 0.0;   // pull that a grasp bears; > 0 while memory.grasped
     LocalLaw law;
 };
 
@@ -41,6 +43,9 @@ struct ContactMemory {
     glm::dvec3 friction_n{0.0}; // tangential part of the force on the tool
     glm::dvec3 lag_m{0.0};      // (p - y)_t belonging to friction_n
     double x = 0.0;             // root of the law, the warm start
+    bool grasped = false;       // jaws hold the contact point; touching as well
+    glm::dvec3 grip_m{0.0};     // r0: p - y at which the grasp carries no force
+    double out_m = 0.0;         // skin that has slipped out of the jaws
 };
 
 /// At most this many Gauss-Seidel sweeps; two tools a millimetre apart need some dozens.
@@ -62,7 +67,8 @@ ContactSolution solve_contact(const ContactProblem& problem,
 /// How far the contact point will slip for this tip position, judged before the solve from the
 /// last normal force and friction: the whole tangential offset if not touching or frictionless,
 /// else what the stick trial exceeds the Coulomb disc by. Carry the point by this, solve, then
-/// apply the solution's remaining slip. `own_compliance`: this tool's W_ii. Real-time safe.
+/// apply the solution's remaining slip. Not for a grasp, which only the solve may let slip.
+/// `own_compliance`: this tool's W_ii. Real-time safe.
 glm::dvec3 predicted_slip(const ContactRow& row, const glm::dmat3& own_compliance,
                           const ContactMemory& memory) noexcept;
 

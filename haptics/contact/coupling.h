@@ -20,6 +20,7 @@ struct RunningModel {
     std::array<SurfacePoint, kTools> contact{};
     std::array<ContactMemory, kTools> memory{};
     std::array<glm::dvec3, kTools> force_n{};
+    std::array<int, kTools> closing{}; // last closing of each tool's jaws that was heeded
 };
 
 /// A jump of the force at a change of model, bled off over one FEM period.
@@ -45,10 +46,11 @@ struct CouplingState {
 struct CouplingResult {
     std::array<glm::dvec3, kTools> force_n{}; // on each tool, before limits
     std::array<bool, kTools> touching{};
-    bool promoted = false; // pending became active in this tick: the slot of the old
-                           // active answer may be reused by the caller
-    int replayed = 0;      // ticks replayed in this call, for the tick budget
-    int slid_off = 0;      // tools that left their patch over its rim: no force, no ghost
+    std::array<bool, kTools> grasping{}; // jaws hold tissue; touching as well
+    bool promoted = false;               // pending became active in this tick: the slot of the old
+                                         // active answer may be reused by the caller
+    int replayed = 0;                    // ticks replayed in this call, for the tick budget
+    int slid_off = 0; // tools that left their patch over its rim: no force, no ghost
     double solve_residual_m = 0.0;
 };
 

@@ -12,8 +12,10 @@ CouplingResult hold_tick(CouplingState& state, const CouplingConfig&, const Pose
     }
     state.active.tick = tick;
     result.force_n = state.active.force_n;
-    for (int i = 0; i < kTools; ++i)
+    for (int i = 0; i < kTools; ++i) {
         result.touching[i] = state.active.memory[i].touching;
+        result.grasping[i] = state.active.memory[i].grasped;
+    }
     return result;
 }
 

@@ -60,6 +60,7 @@ struct ToolPatch {
     SurfacePoint contact;
     ContactMemory memory;
     glm::dvec3 force_n{0.0}; // on the tool
+    int closing = 0;         // last closing of the jaws that the step knew of; also if not near
 };
 
 struct LocalModels {

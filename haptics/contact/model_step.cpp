@@ -1,8 +1,10 @@
 #include "haptics/contact/model_step.h"
 
+#include "haptics/contact/grasp.h"
 #include "haptics/contact/surface_walk.h"
 
 #include <cmath>
+#include <utility>
 
 namespace haptics {
 namespace {
@@ -130,6 +132,8 @@ bool place_tool(const RunningModel& model, const FreeMotion& free, int i, Surfac
 
     read_patch(patch, at, free, row, point);
     own = compliance(point, point, patch.modes);
+    if (memory.grasped)
+        return true;
     glm::dvec3 slip_m = predicted_slip(row, own, memory);
     if (slip_m == glm::dvec3{0.0})
         return true;
@@ -159,14 +163,21 @@ int gather_rows(RunningModel& model, const FreeMotion& free,
     for (int i = 0; i < kTools; ++i) {
         const ToolPatch& patch = answer.tool[i];
         const int triangle = model.contact[i].triangle;
+        const JawGrip& grip = tips[i].grip;
+        const bool closes = std::exchange(model.closing[i], grip.closing) != grip.closing;
+        if (model.memory[i].grasped && (closes || !(grip.hold_n > 0.0)))
+            release_grasp(model.memory[i]);
         if (!patch.near || triangle < 0 || triangle >= patch.triangles || !finite(tips[i].centre_m))
             continue;
         ContactRow& row = scratch.problem.row[i];
         row.tip_m = tips[i].centre_m;
         row.tip_radius_m = tips[i].radius_m;
+        row.hold_n = grip.hold_n;
         const bool on_patch = place_tool(model, free, i, model.contact[i], scratch);
         slid_off += on_patch ? 0 : 1;
         row.active = on_patch && finite(row.surface_free_m);
+        if (closes && row.active)
+            begin_grasp(row, grip, model.memory[i]);
     }
     for (int i = 0; i < kTools; ++i)
         for (int j = 0; j < i; ++j) {
@@ -221,12 +232,16 @@ StepResult step_model(RunningModel& model, double tick_s,
         if (!scratch.problem.row[i].active)
             continue;
         result.touching[i] = model.memory[i].touching;
+        result.grasping[i] = model.memory[i].grasped;
         result.normal[i] = scratch.problem.row[i].normal;
         if (!result.touching[i] || solved.slip_m[i] == glm::dvec3{0.0})
             continue;
         const ToolPatch& patch = model.answer->tool[i];
         const DeformedPatch surface{patch, model.q.data() + patch.first_mode};
-        model.contact[i] = walk(surface, model.contact[i], solved.slip_m[i]).point;
+        const WalkResult walked = walk(surface, model.contact[i], solved.slip_m[i]);
+        model.contact[i] = walked.point;
+        if (walked.at_rim && model.memory[i].grasped)
+            release_grasp(model.memory[i]);
     }
     ++model.tick;
     return result;

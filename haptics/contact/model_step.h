@@ -14,6 +14,7 @@ namespace haptics {
 
 struct StepResult {
     std::array<bool, kTools> touching{};
+    std::array<bool, kTools> grasping{};
     std::array<glm::dvec3, kTools> normal{}; // of the contacts, where touching
     int slid_off = 0;                        // tools beyond the rim of their patch
     double solve_residual_m = 0.0;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "haptics/contact/contact_rows.h"
+#include "haptics/contact/jaws.h"
 
 #include <cstdint>
 
@@ -12,6 +13,7 @@ namespace haptics {
 struct ToolTip {
     glm::dvec3 centre_m{0.0}; // of the tip sphere
     double radius_m = 3e-3;
+    JawGrip grip{};
 };
 
 struct PoseHistory {

@@ -42,7 +42,8 @@ void MouseDevice::set_goal(const glm::dvec3& goal_m) noexcept {
 }
 
 void MouseDevice::set_jaw(double closed) noexcept {
-    sample_.jaw_counts = to_counts(1000.0 * std::clamp(closed, 0.0, 1.0));
+    sample_.jaw_counts =
+        std::isfinite(closed) ? to_counts(1000.0 * std::clamp(closed, 0.0, 1.0)) : 0;
 }
 
 } // namespace haptics

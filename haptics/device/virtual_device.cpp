@@ -102,7 +102,7 @@ void VirtualDevice::set_goal(const glm::dvec3& goal_m) noexcept {
 }
 
 void VirtualDevice::set_jaw(double closed) noexcept {
-    jaw_ = std::clamp(closed, 0.0, 1.0);
+    jaw_ = std::isfinite(closed) ? std::clamp(closed, 0.0, 1.0) : 0.0;
 }
 
 void VirtualDevice::step(double tick_s) noexcept {

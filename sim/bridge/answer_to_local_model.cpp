@@ -127,6 +127,7 @@ void fill_tool(TissueRig& rig, int tool, haptics::ToolPatch& out) noexcept {
     out.force_n = contact.force_n;
     out.contact = {};
     out.memory = {};
+    out.closing = contact.closing;
     if (!out.near)
         return;
     const Body& body = rig.bodies[contact.body];

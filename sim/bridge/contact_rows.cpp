@@ -1,28 +1,30 @@
 #include "sim/bridge/contact_rows.h"
 
+#include "haptics/contact/grasp.h"
 #include "haptics/contact/surface_walk.h"
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <utility>
 
 namespace sim {
 namespace {
 
 constexpr double kOpenGap_m = 1e-4; // rounding, with a wide margin
 
-// A free tool takes whatever skin is nearest; the body that it was over wins a tie.
-void find_nearest(TissueRig& rig, int tool, const haptics::ToolTip& tip, double reach_m) noexcept {
+// A free tool takes whatever skin is nearest to `from_m`; the body that it was over wins a tie.
+void find_nearest(TissueRig& rig, int tool, const glm::dvec3& from_m, double reach_m) noexcept {
     FemContact& contact = rig.contact[tool];
     Foot best;
     int body = -1;
     for (std::size_t b = 0; b < rig.bodies.size(); ++b) {
-        const Foot foot = nearest_on(rig.bodies[b], tip.centre_m);
+        const Foot foot = nearest_on(rig.bodies[b], from_m);
         if (body < 0 || foot.distance_m < best.distance_m) {
             best = foot;
             body = static_cast<int>(b);
         }
     }
-    if (body < 0 || best.distance_m - tip.radius_m > reach_m)
+    if (body < 0 || best.distance_m > reach_m)
         body = -1;
     if (body != contact.body)
         contact.own_compliance = glm::dmat3{0.0};
@@ -50,6 +52,17 @@ void follow(TissueRig& rig, int tool, const haptics::ToolTip& tip) noexcept {
     }
 }
 
+// Jaws that have just closed take the skin under them, as it was when they closed.
+void close_jaws(TissueRig& rig, int tool, const haptics::ToolTip& tip) noexcept {
+    const FemContact& contact = rig.contact[tool];
+    const Body& body = rig.bodies[contact.body];
+    const haptics::ContactRow row{.surface_free_m = place_on(body, contact.at),
+                                  .normal = contact.normal,
+                                  .tip_radius_m = tip.radius_m,
+                                  .law = law_on(body, contact.at, rig.floor_mpn[tool])};
+    haptics::begin_grasp(row, tip.grip, rig.memory[tool]);
+}
+
 } // namespace
 
 void follow_contacts(TissueRig& rig, const ToolsNow& tools) noexcept {
@@ -62,13 +75,22 @@ void follow_contacts(TissueRig& rig, const ToolsNow& tools) noexcept {
         const double reach_m = rig.config.reach_m + contact.speed_mps * span_s;
         contact.last_tip_m = tip.centre_m;
         contact.seen = true;
-        if (contact.body >= 0 && rig.memory[i].touching) {
+        const bool closes = std::exchange(contact.closing, tip.grip.closing) != tip.grip.closing &&
+                            tip.grip.hold_n > 0.0;
+        haptics::ContactMemory& memory = rig.memory[i];
+        if (memory.grasped && (closes || !(tip.grip.hold_n > 0.0)))
+            haptics::release_grasp(memory);
+        if (contact.body < 0 || !memory.touching) {
+            find_nearest(rig, i, closes ? tip.grip.closed_at_m : tip.centre_m,
+                         tip.radius_m + reach_m);
+        } else if (!memory.grasped) {
             follow(rig, i, tip);
-        } else {
-            find_nearest(rig, i, tip, reach_m);
         }
-        if (contact.body >= 0)
-            contact.normal = normal_on(rig.bodies[contact.body], contact.at);
+        if (contact.body < 0)
+            continue;
+        contact.normal = normal_on(rig.bodies[contact.body], contact.at);
+        if (closes)
+            close_jaws(rig, i, tip);
     }
 }
 
@@ -137,11 +159,12 @@ void fill_rows(const TissueRig& rig, const ToolsNow& tools,
         const double gap_m =
             glm::dot(contact.normal, tools.tip[i].centre_m - place) - tools.tip[i].radius_m;
         // a skin that does not move cannot come to the tool: rows that are open stay open
-        row.active = !still || gap_m < kOpenGap_m;
+        row.active = !still || gap_m < kOpenGap_m || rig.memory[i].grasped;
         row.tip_m = tools.tip[i].centre_m;
         row.tip_radius_m = tools.tip[i].radius_m;
         row.normal = contact.normal;
         row.friction = body.material.friction;
+        row.hold_n = tools.tip[i].grip.hold_n;
         row.law = law_on(body, contact.at, i, rig.floor_mpn[i]);
         row.surface_free_m = place;
         if (!still) {
@@ -182,7 +205,11 @@ void slide_contacts(TissueRig& rig, const haptics::ContactSolution& solution) no
         if (contact.body < 0)
             continue;
         const Body& body = rig.bodies[contact.body];
-        contact.at = haptics::walk(BodySurface{body}, contact.at, solution.slip_m[i]).point;
+        const haptics::WalkResult walked =
+            haptics::walk(BodySurface{body}, contact.at, solution.slip_m[i]);
+        contact.at = walked.point;
+        if (walked.at_rim && rig.memory[i].grasped && solution.slip_m[i] != glm::dvec3{0.0})
+            haptics::release_grasp(rig.memory[i]);
         contact.normal = normal_on(body, contact.at);
     }
 }

@@ -34,8 +34,10 @@ std::array<haptics::DeviceFault, kTools> read_tools(HapticRig& rig, ToolsNow& no
         const ToolPlace place = place_of(instrument, instrument.sample.counts);
         now.handle_m[i] = place.handle_m;
         now.shaft[i] = place.shaft;
-        now.tip[i] = {place.shaft.tip_m, instrument.tip_radius_m};
         now.jaw[i] = instrument.sample.jaw_counts * 1e-3;
+        instrument.grip =
+            haptics::next_grip(instrument.jaws, instrument.grip, now.jaw[i], place.shaft.tip_m);
+        now.tip[i] = {place.shaft.tip_m, instrument.tip_radius_m, instrument.grip};
         now.roll_rad[i] = instrument.sample.roll_counts * instrument.roll_rad_per_count;
         now.faulted[i] = fault[i] != haptics::DeviceFault::none;
     }
@@ -124,6 +126,7 @@ void haptic_tick(HapticRig& rig, Exchange& exchange, tasks::TickTrace& trace) no
         const glm::dvec3 force_n = finite_or_zero(result.force_n[i], rig.not_finite);
         now.force_n[i] = force_n;
         now.touching[i] = result.touching[i];
+        now.grasping[i] = result.grasping[i];
         send_force(instrument, now.shaft[i], force_n, fault[i], zero, now.felt_share[i]);
         haptics::observe_energy(instrument.energy, now.handle_m[i], instrument.limit_state.last_n);
 
@@ -137,8 +140,9 @@ void haptic_tick(HapticRig& rig, Exchange& exchange, tasks::TickTrace& trace) no
             length > 0.0 ? now.tip[i].centre_m - instrument.tip_radius_m / length * force_n
                          : now.tip[i].centre_m;
         out.contact_um = micrometres(touch_m);
-        out.flags = static_cast<std::uint8_t>(
-            (result.touching[i] ? 1 : 0) | (instrument.device ? 2 : 0) | (now.faulted[i] ? 4 : 0));
+        out.flags =
+            static_cast<std::uint8_t>((result.touching[i] ? 1 : 0) | (instrument.device ? 2 : 0) |
+                                      (now.faulted[i] ? 4 : 0) | (result.grasping[i] ? 16 : 0));
     }
     exchange.tools_seen.back() = now;
     exchange.tools_seen.publish();

@@ -24,6 +24,8 @@ struct Instrument {
     double metres_per_count = 20e-6;
     double roll_rad_per_count = 1e-3;
     double tip_radius_m = 3e-3;
+    haptics::JawConfig jaws;
+    haptics::JawGrip grip; // as of the last tick
     haptics::LimitConfig limits;
     haptics::LimitState limit_state;
     haptics::EnergyObserver energy;

@@ -28,6 +28,7 @@ struct FemContact {
     glm::dvec3 last_tip_m{0.0};
     double speed_mps = 0.0; // of the tip over the last period
     bool seen = false;      // last_tip_m is set
+    int closing = 0;        // last closing of the tool's jaws that was heeded
 };
 
 struct TissueConfig {

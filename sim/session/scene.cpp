@@ -65,6 +65,7 @@ HapticRig make_haptics(const Scene& scene) {
         instrument.origin_m = haptics::handle_for_tip(tool.trocar, tool.start_tip_m);
         instrument.metres_per_count = tool.metres_per_count;
         instrument.tip_radius_m = tool.tip_radius_m;
+        instrument.jaws = tool.jaws;
     }
     return rig;
 }

@@ -28,6 +28,7 @@ struct SceneTool {
     haptics::Trocar trocar;
     glm::dvec3 start_tip_m{0.0};
     double tip_radius_m = 3e-3;
+    haptics::JawConfig jaws;
     double metres_per_count = 20e-6; // of the recorded counts
 };
 

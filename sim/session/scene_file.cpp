@@ -83,13 +83,16 @@ tasks::Role role_of(const TomlTable& t) {
 }
 
 SceneTool parse_tool(const TomlTable& t) {
-    t.accept_only({"role", "fulcrum_mm", "start_tip_mm", "shaft_mm", "tip_radius_mm"});
+    t.accept_only({"role", "fulcrum_mm", "start_tip_mm", "shaft_mm", "tip_radius_mm", "jaw_grip_n",
+                   "jaw_friction"});
     SceneTool tool;
     tool.role = role_of(t);
     tool.trocar.fulcrum_m = t.place_mm("fulcrum_mm", kPlace_mm);
     tool.start_tip_m = t.place_mm("start_tip_mm", kPlace_mm);
     tool.trocar.shaft_m = 1e-3 * t.number("shaft_mm", {100.0, 600.0}, 330.0);
     tool.tip_radius_m = 1e-3 * t.number("tip_radius_mm", {0.5, 10.0}, 3.0);
+    tool.jaws.grip_n = t.number("jaw_grip_n", {0.0, 20.0}, tool.jaws.grip_n);
+    tool.jaws.friction = t.number("jaw_friction", {0.0, 2.0}, tool.jaws.friction);
     const double inside = glm::distance(tool.trocar.fulcrum_m, tool.start_tip_m);
     const double least = tool.trocar.min_insertion_m;
     const double most = tool.trocar.shaft_m - tool.trocar.min_outside_m;

@@ -17,7 +17,8 @@ struct ToolTrace {
     std::int32_t roll_counts = 0, jaw_counts = 0;
     std::array<std::int32_t, 3> force_mn{};   // on the tip, as commanded after limits
     std::array<std::int32_t, 3> contact_um{}; // world; where the tip touches
-    std::uint8_t flags = 0;                   // 1 touching, 2 present, 4 faulted, 8 limited
+    std::uint8_t flags = 0;                   // 1 touching, 2 present, 4 faulted, 8 limited,
+                                              // 16 grasping
 };
 
 struct TickTrace {
