@@ -29,7 +29,7 @@ void add_coupling(CLI::App& study, const std::shared_ptr<StudyArguments>& a) {
     CLI::App* c = study.add_subcommand("coupling", "Force error against FEM rate, by coupling");
     CouplingStudyOptions& o = a->coupling;
     c->add_option("--scene", o.scene, "Its first organ is used");
-    c->add_option("--motions", o.motions, "touch press slide scrub release two-tools");
+    c->add_option("--motions", o.motions, "touch press slide scrub release two-tools grasp-pull");
     c->add_option("--speeds", o.speeds_mmps, "mm/s");
     c->add_option("--fem-hz", o.fem_hz, "FEM rates");
     c->add_option("--couplings", o.couplings, "anchored hold");

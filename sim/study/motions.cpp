@@ -80,6 +80,14 @@ Plan two_moving(double t, double v, double s) {
     return {blend * s * (3e-3 + 3.5e-3 * std::sin(w * t)) - (1.0 - blend) * 1e-3, 7.5e-3};
 }
 
+constexpr double kGrasp_s = 0.25, kPull_s = 0.3, kHeld_s = 0.15, kAfter_s = 0.15;
+
+// 3 mm deep, jaws closed at kGrasp_s, from kPull_s 8 mm up and 6 mm along at v, held, jaws opened.
+Plan grasp_pull(double t, double v, double s) {
+    const double pulled = std::clamp(v * (t - kPull_s), 0.0, 10e-3 * s);
+    return {ramp(t, 0.04, -1e-3, 3e-3 * s) - 0.8 * pulled, 0.6 * pulled};
+}
+
 double duration_s(const std::string& name, double v) {
     if (name == "touch")
         return 10e-3 / v + 0.2;
@@ -89,6 +97,8 @@ double duration_s(const std::string& name, double v) {
         return kSettle_s + 22e-3 / v + 0.1;
     if (name == "scrub")
         return kSettle_s + std::max(0.5, kTwoPi * 8e-3 / v);
+    if (name == "grasp-pull")
+        return kPull_s + 10e-3 / v + kHeld_s + kAfter_s;
     return 0.3 + 12e-3 / v + 10e-3 / v + 0.15;
 }
 
@@ -114,17 +124,19 @@ Motion make_motion(const std::string& name, double speed_mps, const Body& organ,
         const char* name;
         std::array<PlanAt, 2> plan;
     };
-    static constexpr std::array<Named, 6> known{{{"touch", {touch, nullptr}},
+    static constexpr std::array<Named, 7> known{{{"touch", {touch, nullptr}},
                                                  {"press", {press, nullptr}},
                                                  {"slide", {slide, nullptr}},
                                                  {"scrub", {scrub, nullptr}},
                                                  {"release", {release, nullptr}},
-                                                 {"two-tools", {two_still, two_moving}}}};
+                                                 {"two-tools", {two_still, two_moving}},
+                                                 {"grasp-pull", {grasp_pull, nullptr}}}};
     const auto found =
         std::find_if(known.begin(), known.end(), [&](const Named& n) { return name == n.name; });
     if (found == known.end()) {
         throw std::invalid_argument(
-            "motion \"" + name + "\" is unknown: touch, press, slide, scrub, release, two-tools");
+            "motion \"" + name +
+            "\" is unknown: touch, press, slide, scrub, release, two-tools, grasp-pull");
     }
     Frame frame;
     frame.at = nearest_on(organ, place_m).at;
@@ -132,7 +144,12 @@ Motion make_motion(const std::string& name, double speed_mps, const Body& organ,
     frame.across = glm::normalize(glm::cross(n, heading));
     frame.along = glm::cross(frame.across, n);
 
-    Motion motion{name, speed_mps, found->plan[1] ? 2 : 1, {}};
+    Motion motion{name, speed_mps, found->plan[1] ? 2 : 1, {}, -1, -1};
+    if (name == "grasp-pull") {
+        motion.jaw_closes = static_cast<std::int64_t>(kGrasp_s / kTick_s);
+        motion.jaw_opens =
+            static_cast<std::int64_t>((kPull_s + 10e-3 / speed_mps + kHeld_s) / kTick_s);
+    }
     const auto ticks = static_cast<std::size_t>(duration_s(name, speed_mps) / kTick_s);
     motion.tip_m.resize(ticks);
     for (std::size_t i = 0; i < ticks; ++i) {

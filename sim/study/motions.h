@@ -16,14 +16,15 @@ struct Motion {
     double speed_mps = 0.0;
     int tools = 1;
     std::vector<std::array<glm::dvec3, kTools>> tip_m;
+    std::int64_t jaw_closes = -1, jaw_opens = -1; // ticks, of the first tool; -1: stays open
 };
 
-inline constexpr std::array<const char*, 6> kMotionNames{"touch", "press",   "slide",
-                                                         "scrub", "release", "two-tools"};
+inline constexpr std::array<const char*, 7> kMotionNames{
+    "touch", "press", "slide", "scrub", "release", "two-tools", "grasp-pull"};
 
 /// `name`: one of kMotionNames. `place_m`: near where on the organ; `heading`: roughly where
-/// slides go. Depths are scaled by `depth_scale` (1: 8 mm touch, 5 mm slide).
-/// Throws std::invalid_argument for another name.
+/// slides go; a grasp-pull holds what the jaws of a scene's tools hold at most. Depths are scaled
+/// by `depth_scale` (1: 8 mm touch, 5 mm slide). Throws std::invalid_argument for another name.
 Motion make_motion(const std::string& name, double speed_mps, const Body& organ,
                    const glm::dvec3& place_m, const glm::dvec3& heading, double tip_radius_m,
                    double depth_scale = 1.0);

@@ -12,13 +12,17 @@
 namespace sim {
 namespace {
 
-// Tools held without a lever: the tip is the handle.
-ToolsNow tools_at(std::int64_t tick, const std::array<glm::dvec3, kTools>& tip_m,
-                  double tip_radius_m) {
+// Tools held without a lever: the tip is the handle. Jaws are open or fully closed.
+ToolsNow tools_at(std::int64_t tick, const Motion& motion,
+                  const std::array<glm::dvec3, kTools>& tip_m, double tip_radius_m) {
     ToolsNow now;
     now.tick = tick;
     for (int i = 0; i < kTools; ++i)
         now.tip[i] = {tip_m[i], tip_radius_m};
+    if (motion.jaw_closes >= 0 && tick >= motion.jaw_closes && tick < motion.jaw_opens) {
+        const auto closed = static_cast<std::size_t>(motion.jaw_closes);
+        now.tip[0].grip = haptics::next_grip({}, {}, 1.0, motion.tip_m[closed][0]);
+    }
     return now;
 }
 
@@ -52,7 +56,8 @@ ForceTrack run_monolithic(const std::function<TissueRig(const TissueConfig&)>& m
             for (int t = 0; t < kTools && i > 0; ++t) {
                 tip[t] = motion.tip_m[i - 1][t] + part * (tip[t] - motion.tip_m[i - 1][t]);
             }
-            tissue_step(rig, tools_at(static_cast<std::int64_t>(i), tip, tip_radius_m), *answer);
+            tissue_step(rig, tools_at(static_cast<std::int64_t>(i), motion, tip, tip_radius_m),
+                        *answer);
         }
         track[i] = forces_of(rig);
     }
@@ -78,7 +83,7 @@ ForceTrack run_coupled(const std::function<TissueRig(const TissueConfig&)>& make
     ForceTrack track(motion.tip_m.size());
     for (std::size_t i = 0; i < motion.tip_m.size(); ++i) {
         const auto tick = static_cast<std::int64_t>(i);
-        const ToolsNow now = tools_at(tick, motion.tip_m[i], tip_radius_m);
+        const ToolsNow now = tools_at(tick, motion, motion.tip_m[i], tip_radius_m);
         history.push(tick, now.tip);
         if (!flights.empty() && flights.front().arrives <= tick && !pending) {
             pending = std::move(flights.front().answer);

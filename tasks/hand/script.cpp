@@ -11,6 +11,7 @@ constexpr double kHover_m = 10e-3;
 constexpr double kRetract_m = 15e-3;
 constexpr double kSpeed_mps = 0.05; // peak of a movement without `seconds`
 constexpr double kPressSpeed_mps = 0.01;
+constexpr double kJaw_s = 0.3;           // of a closing or opening without `seconds`
 constexpr double kPressLimit_s = 5.0;    // without `seconds`
 constexpr double kReached = 0.95;        // of the force: press is over
 constexpr double kMostAdvance_m = 40e-3; // nothing there: do not go on for ever
@@ -112,6 +113,16 @@ bool ScriptHand::touch(const HandSight& sight, const ScriptStep& step) {
     return true;
 }
 
+bool ScriptHand::move_jaw(const ScriptStep& step, double to) {
+    double& jaw = jaw_[index_of(step)];
+    if (stage_ == Stage::begin)
+        jaw_from_ = jaw;
+    stage_ = Stage::travel;
+    const double share = std::min(1.0, elapsed_s_ / step.seconds.value_or(kJaw_s));
+    jaw = jaw_from_ + share * (to - jaw_from_);
+    return share >= 1.0;
+}
+
 bool ScriptHand::perform(const HandSight& sight, const ScriptStep& step) {
     const std::size_t t = index_of(step);
     const bool begins = stage_ == Stage::begin;
@@ -146,6 +157,10 @@ bool ScriptHand::perform(const HandSight& sight, const ScriptStep& step) {
         return follow();
     case Verb::wait:
         return elapsed_s_ >= *step.seconds;
+    case Verb::grasp:
+        return move_jaw(step, 1.0);
+    case Verb::release:
+        return move_jaw(step, 0.0);
     }
     return true;
 }
@@ -160,7 +175,7 @@ HandGoals ScriptHand::tick(const HandSight& sight) {
             elapsed_s_ = 0.0;
         }
     }
-    return {goal_m_, {}};
+    return {goal_m_, jaw_};
 }
 
 } // namespace tasks

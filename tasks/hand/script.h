@@ -13,6 +13,8 @@
 //                                                      here is the one to press with from now on
 //     retract           seconds                        15 mm back the way it pressed
 //     wait              seconds                        all tools go on as they are
+//     grasp             seconds                        closes the jaws, in 0.3 s if not said
+//     release           seconds                        opens them
 //   [[expect]]          metric = "path_length", min, max (one or both)
 #pragma once
 
@@ -24,7 +26,7 @@
 
 namespace tasks {
 
-enum class Verb : std::uint8_t { move, touch, press, hold, retract, wait };
+enum class Verb : std::uint8_t { move, touch, press, hold, retract, wait, grasp, release };
 
 struct ScriptStep {
     Verb verb = Verb::wait;
@@ -68,6 +70,7 @@ class ScriptHand {
     void begin_pressing(const HandSight& sight, const ScriptStep& step);
     void keep_pressing(const HandSight& sight);
     bool touch(const HandSight& sight, const ScriptStep& step);
+    bool move_jaw(const ScriptStep& step, double to);
 
     Script script_;
     Exercise exercise_;
@@ -76,6 +79,8 @@ class ScriptHand {
     Stage stage_ = Stage::begin;
     double elapsed_s_ = 0.0; // of this step
     std::array<glm::dvec3, kTools> goal_m_;
+    std::array<double, kTools> jaw_{}; // 0 open .. 1 closed
+    double jaw_from_ = 0.0;
     MinimumJerk move_;
     struct Pressing {
         bool active = false;

@@ -25,6 +25,8 @@ void accept_for(Verb verb, const TomlTable& t) {
     case Verb::hold:
         return t.accept_only({"tool", "verb", "force_n", "seconds"});
     case Verb::retract:
+    case Verb::grasp:
+    case Verb::release:
         return t.accept_only({"tool", "verb", "seconds"});
     case Verb::wait:
         return t.accept_only({"verb", "seconds"});
@@ -34,8 +36,8 @@ void accept_for(Verb verb, const TomlTable& t) {
 ScriptStep parse_step(const TomlTable& t) {
     ScriptStep step;
     step.where = t.where();
-    step.verb =
-        static_cast<Verb>(t.choice("verb", {"move", "touch", "press", "hold", "retract", "wait"}));
+    step.verb = static_cast<Verb>(t.choice(
+        "verb", {"move", "touch", "press", "hold", "retract", "wait", "grasp", "release"}));
     accept_for(step.verb, t);
     if (step.verb != Verb::wait)
         step.tool = static_cast<Role>(t.choice("tool", {"left", "right", "assist"}));

@@ -92,6 +92,38 @@ seconds = 1
     CHECK(rig.now.tool[0].tip_m == rig.start_tip_m[0]);
 }
 
+TEST_CASE(
+    "grasp closes the jaws of its tool alone, they stay closed while it moves, release opens") {
+    const char* text = R"(
+[[step]]
+verb = "grasp"
+tool = "left"
+[[step]]
+verb = "move"
+tool = "left"
+at_mm = [0, 0, 30]
+seconds = 1
+[[step]]
+verb = "release"
+tool = "left"
+seconds = 0.1
+)";
+    ToyRig rig = make_rig(nine_points());
+    ScriptHand hand(parse_script(text, "s.toml"), rig.exercise, rig.start_tip_m);
+    double last = 0.0;
+    for (int tick = 1; tick <= 1500; ++tick) {
+        const HandGoals goals = hand.tick({.tick = tick, .now = rig.now});
+        if (tick <= 300)
+            CHECK(goals.jaw[0] == relative(tick / 300.0, 1e-9));
+        if (tick > 300 && tick <= 1290)
+            CHECK(goals.jaw[0] == 1.0);
+        CHECK(std::abs(goals.jaw[0] - last) < 0.011); // no jump
+        CHECK(goals.jaw[1] == 0.0);
+        last = goals.jaw[0];
+    }
+    CHECK(last == 0.0);
+}
+
 TEST_CASE("a press that meets nothing ends with its time and stops within 40 mm") {
     ToyRig rig = make_rig(nine_points());
     rig.start_tip_m[1].z = rig.now.tool[1].tip_m.z = 0.2;
@@ -106,7 +138,9 @@ TEST_CASE("a press that meets nothing ends with its time and stops within 40 mm"
 TEST_CASE("a mistake in a script is named by file, line, key, value and what is accepted") {
     CHECK(message("[[step]]\nverb = \"push\"\n") ==
           "s.toml:2: verb = \"push\": one of \"move\", \"touch\", \"press\", \"hold\", "
-          "\"retract\", \"wait\"");
+          "\"retract\", \"wait\", \"grasp\", \"release\"");
+    CHECK(message("[[step]]\nverb = \"grasp\"\ntool = \"left\"\nforce_n = 1\n") ==
+          "s.toml:4: force_n = 1: unknown key; accepted here: tool, verb, seconds");
     CHECK(message("[[step]]\nverb = \"wait\"\n") ==
           "s.toml:1: seconds is missing: a number from 0.001 to 3600");
     CHECK(message("[[step]]\nverb = \"wait\"\nseconds = 1\nforce_n = 2\n") ==
