@@ -28,9 +28,10 @@ bool begin_grasp(const ContactRow& row, const JawGrip& grip, ContactMemory& memo
         memory.grip_m = row.tip_radius_m * n + memory.lag_m + soft * memory.friction_n;
     } else {
         const glm::dvec3 above_m = grip.closed_at_m - row.surface_free_m;
-        if (!(glm::length(above_m) <= row.tip_radius_m + kGraspReach_m))
-            return false;
         const double height_m = glm::dot(n, above_m);
+        if (!(height_m <= row.tip_radius_m + kGraspReach_m &&
+              glm::length(above_m - height_m * n) <= row.tip_radius_m))
+            return false;
         memory = {};
         memory.grip_m = above_m + n * (std::max(height_m, row.tip_radius_m) - height_m);
     }

@@ -20,7 +20,7 @@
 
 namespace haptics {
 
-/// A tip this far above the skin still takes it when its jaws close. Design value.
+/// A tip this far above the skin below it still takes it when its jaws close. Design value.
 inline constexpr double kGraspReach_m = 1.5e-3;
 /// Skin that may slip out of the jaws before they hold nothing. Design value.
 inline constexpr double kBite_m = 5e-3;

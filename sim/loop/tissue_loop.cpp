@@ -85,7 +85,8 @@ void advance_bodies(TissueRig& rig, const haptics::ContactSolution& solution) no
     }
 }
 
-// Depth under a tip that the mesh cannot show, and how far around the tip it reaches.
+// Depth under a tip that the mesh cannot show, and how far around the tip it reaches. Held skin
+// is drawn after the tip, wherever that is.
 struct Dimple {
     glm::dvec3 centre_m{0.0}, down{0.0};
     double depth_m = 0.0, contact_radius_m = 1e-9, reach_m = 1.0;
@@ -108,6 +109,12 @@ Dimple dimple_of(const TissueRig& rig, int tool) noexcept {
     out.depth_m = std::max(0.0, haptics::law_at(law, rig.memory[tool].x).depth_m);
     out.contact_radius_m = haptics::contact_radius(law, rig.memory[tool].x);
     out.reach_m = body.organ->surface.footprint_radius_m[corner[0]];
+    if (rig.memory[tool].grasped) { // a tent drawn after the tip
+        const glm::dvec3 stretch_m = contact.last_tip_m - out.centre_m - rig.memory[tool].grip_m;
+        out.depth_m = glm::length(stretch_m);
+        out.down = stretch_m / std::max(out.depth_m, 1e-12);
+        out.contact_radius_m = haptics::kHeldRadius_m;
+    }
     return out;
 }
 

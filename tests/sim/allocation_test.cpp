@@ -55,38 +55,63 @@ TEST_CASE("allocation: the counter counts") {
     CHECK(allocations == 1);
 }
 
-TEST_CASE("allocation: a haptic tick and a tissue step allocate nothing, touching or not") {
+namespace {
+
+struct Counted {
+    int in_ticks = 0, in_steps = 0, touching = 0, grasping = 0;
+};
+
+// An expert's attempt, with jaws that close and open all the time or not at all.
+Counted count_attempt(bool jaws, int ticks) {
     sim::RunOptions options;
     options.hands = "expert";
     const auto session = sim::make_session(options);
     sim::Exchange& exchange = *session->exchange;
     tasks::TickTrace trace;
     sim::ToolsNow sampled;
-    int in_ticks = 0, in_steps = 0, touching = 0;
+    Counted count;
     tasks::HandSight sight = sim::sight_of(*session, trace, 0, false);
-    constexpr int kTicks = 6000;
-    for (int tick = 0; tick < kTicks; ++tick) {
+    for (int tick = 0; tick < ticks; ++tick) {
         if (tick > 0 && tick % 10 == 0) {
             allocations = 0;
             counting = true;
             sim::tissue_step(session->tissue, sampled, exchange.answers.back());
             counting = false;
-            in_steps += allocations;
+            count.in_steps += allocations;
             exchange.answers.publish();
         }
         sim::crew_tick(session->crew, session->haptics, sight);
+        for (const auto& device : session->crew.device)
+            device->set_jaw(jaws && tick / 150 % 2 ? 1.0 : 0.0);
         allocations = 0;
         counting = true;
         sim::haptic_tick(session->haptics, exchange, trace);
         counting = false;
-        in_ticks += allocations;
-        for (const tasks::ToolTrace& tool : trace.tool)
-            touching += tool.flags & 1;
+        count.in_ticks += allocations;
+        for (const tasks::ToolTrace& tool : trace.tool) {
+            count.touching += (tool.flags & 1) != 0;
+            count.grasping += (tool.flags & 16) != 0;
+        }
         if (tick % 10 == 0)
             sampled = exchange.tools.latest();
         sight = sim::sight_of(*session, trace, 0, false);
     }
-    CHECK(touching > 100); // else the test looked at nothing
-    CHECK(in_ticks == 0);
-    CHECK(in_steps == 0);
+    return count;
+}
+
+} // namespace
+
+TEST_CASE("allocation: a haptic tick and a tissue step allocate nothing, touching or not") {
+    const Counted count = count_attempt(false, 6000);
+    CHECK(count.touching > 100); // else the test looked at nothing
+    CHECK(count.grasping == 0);
+    CHECK(count.in_ticks == 0);
+    CHECK(count.in_steps == 0);
+}
+
+TEST_CASE("allocation: nor do they while jaws grasp and let go") {
+    const Counted count = count_attempt(true, 6000);
+    CHECK(count.grasping > 100);
+    CHECK(count.in_ticks == 0);
+    CHECK(count.in_steps == 0);
 }
