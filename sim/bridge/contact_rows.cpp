@@ -59,7 +59,7 @@ void close_jaws(TissueRig& rig, int tool, const haptics::ToolTip& tip) noexcept 
     const haptics::ContactRow row{.surface_free_m = place_on(body, contact.at),
                                   .normal = contact.normal,
                                   .tip_radius_m = tip.radius_m,
-                                  .law = law_on(body, contact.at, rig.floor_mpn[tool])};
+                                  .law = law_on(body, contact.at, tool, rig.floor_mpn[tool])};
     haptics::begin_grasp(row, tip.grip, rig.memory[tool]);
 }
 
