@@ -148,7 +148,7 @@ TEST_CASE("grasp: a lifted organ follows the tip, as hard as the local model say
     CHECK(glm::dot(bench.material_place() - bench.place, bench.normal) > 0.5e-3);
 
     const haptics::LocalLaw law =
-        sim::law_on(bench.rig.bodies[0], bench.rig.contact[0].at, bench.rig.floor_mpn[0]);
+        sim::law_on(bench.rig.bodies[0], bench.rig.contact[0].at, 0, bench.rig.floor_mpn[0]);
     const haptics::GraspCompliance held = haptics::grasp_compliance(law);
     const glm::dvec3 n = bench.rig.contact[0].normal;
     const glm::dmat3 own = static_compliance(bench) + glm::dmat3{held.tangential_mpn} +
