@@ -53,18 +53,32 @@ Program make_tissue(bool fine, bool near) {
             shaders::tissue_vertex, shaders::tissue_fragment};
 }
 
-/// Whether a tip is within reach of its own shadow, by some of the vertices.
-bool tools_near(const ViewFrame& frame, const SurfaceView& surface) {
+/// Whether the tip is within reach of its own shadow, by some of the vertices.
+bool casts_shadow(const ToolView& tool, const SurfaceView& surface) {
     constexpr float kNear2_m2 = 0.045F * 0.045F;
-    for (const ToolView& tool : frame.tools) {
-        const glm::vec3 tip_m(tool.tip_m);
-        for (std::size_t i = 0; tool.present && i < surface.position_m.size(); i += 3) {
-            const glm::vec3 w = surface.position_m[i] - tip_m;
-            if (glm::dot(w, w) < kNear2_m2)
-                return true;
-        }
+    const glm::vec3 tip_m(tool.tip_m);
+    for (std::size_t i = 0; tool.present && i < surface.position_m.size(); i += 3) {
+        const glm::vec3 w = surface.position_m[i] - tip_m;
+        if (glm::dot(w, w) < kNear2_m2)
+            return true;
     }
     return false;
+}
+
+struct Shadows {
+    std::array<glm::vec4, kTools> tip{}; // centre, radius
+    std::array<glm::vec3, kTools> back{};
+    int count = 0;
+};
+Shadows shadows_on(const ViewFrame& frame, const SurfaceView& surface) {
+    Shadows shadows;
+    for (const ToolView& tool : frame.tools) {
+        if (!casts_shadow(tool, surface))
+            continue;
+        shadows.tip[shadows.count] = glm::vec4(glm::vec3(tool.tip_m), tool.tip_radius_m);
+        shadows.back[shadows.count++] = glm::vec3(-tool.direction);
+    }
+    return shadows;
 }
 
 void set_style(const Program& program, const TissueStyle& style) {
@@ -176,20 +190,15 @@ void Picture::draw_surface(const ViewFrame& frame, std::size_t index, const glm:
     if (n == 0 || surface.position_m.size() != n || surface.normal.size() != n)
         return; // not published yet
     const TissueStyle& style = style_of(surface.look);
-    const bool near = tools_near(frame, surface);
-    const Program& program = tissue_[tissue_program(style.fine_tiles_1pm > 0.0F, near)];
+    const Shadows shadows = shadows_on(frame, surface);
+    const Program& program =
+        tissue_[tissue_program(style.fine_tiles_1pm > 0.0F, shadows.count > 0)];
     see(program, frame.camera, to_clip);
     program.set("noise", 0);
     set_style(program, style);
-    std::array<glm::vec4, kTools> tip{};
-    std::array<glm::vec3, kTools> back{};
-    for (std::size_t t = 0; near && t < tip.size(); ++t) {
-        const ToolView& tool = frame.tools[t];
-        tip[t] = glm::vec4(glm::vec3(tool.tip_m), tool.present ? tool.tip_radius_m : 0.0);
-        back[t] = glm::vec3(-tool.direction);
-    }
-    program.set("tip", tip.data(), kTools);
-    program.set("back", back.data(), kTools);
+    program.set("tools", shadows.count);
+    program.set("tip", shadows.tip.data(), kTools);
+    program.set("back", shadows.back.data(), kTools);
     const Uploaded& up = uploaded(frame, index);
     glDrawElements(GL_TRIANGLES, up.indices, GL_UNSIGNED_INT, nullptr);
 }

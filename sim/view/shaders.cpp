@@ -59,7 +59,8 @@ uniform vec3 vein;
 uniform vec3 tiles;   // coarse, fine, share of the fine
 uniform vec3 veins;   // large, small
 uniform vec3 film_of; // wet, bumps
-uniform vec4 tip[3];  // centre, radius; radius 0: no tool
+uniform int tools;    // how many of the following
+uniform vec4 tip[3];  // centre, radius
 uniform vec3 back[3]; // from tip to handle
 out vec4 colour;
 
@@ -92,7 +93,7 @@ void main() {
 
     float open = 0.35 + 0.65 * sky;
 #ifdef NEAR
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < tools; ++i)
         open *= 1.0 - 0.85 * hidden_by(i, n);
 #endif
 
