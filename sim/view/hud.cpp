@@ -206,11 +206,14 @@ void draw_hud(const ViewFrame& frame, Screen screen, const Fonts& fonts) {
     draw_counters(pen, frame);
     draw_forces(pen, frame);
     const float top_em = pen.narrow() ? 3.0F : 0.0F; // the next target stands in a second row
-    draw_messages(pen, frame, top_em + (screen == Screen::demo ? 7.2F : 4.3F));
+    const bool demo = screen == Screen::demo;
+    draw_messages(pen, frame, demo && !pen.narrow() ? 7.2F : 4.3F + top_em);
     draw_foot(pen, screen);
-    if (screen == Screen::demo)
-        centred(pen, fonts.title, 0.5F * pen.width, (4.2F + top_em) * pen.em, ink::warn,
+    if (demo && pen.narrow()) // between the clock and the counters
+        centred(pen, fonts.body, 0.5F * (pen.width + 0.5F * pen.em), 1.8F * pen.em, ink::warn,
                 "Demonstration");
+    else if (demo)
+        centred(pen, fonts.title, 0.5F * pen.width, 4.2F * pen.em, ink::warn, "Demonstration");
 }
 
 } // namespace view
