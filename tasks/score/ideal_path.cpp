@@ -77,4 +77,23 @@ double shortest_tour_m(const glm::dvec3& start_m, std::span<const glm::dvec3> ce
     return before;
 }
 
+double retraction_tour_m(const glm::dvec3& fulcrum_m, const glm::dvec3& start_m,
+                         std::span<const glm::dvec3> place_m, double radius_m) {
+    const auto angle_between = [](const glm::dvec3& a, const glm::dvec3& b) {
+        return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+    };
+    const double clear_m = glm::distance(start_m, fulcrum_m);
+    double length = 0.0, depth_m = clear_m;
+    glm::dvec3 from = start_m - fulcrum_m;
+    for (const glm::dvec3& place : place_m) {
+        const glm::dvec3 to = place - fulcrum_m;
+        const double next_m = std::max(0.0, glm::length(to) - radius_m);
+        const double swing_m = std::min({clear_m, depth_m, next_m});
+        length += (depth_m - swing_m) + swing_m * angle_between(from, to) + (next_m - swing_m);
+        depth_m = next_m;
+        from = to;
+    }
+    return length;
+}
+
 } // namespace tasks

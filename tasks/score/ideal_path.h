@@ -1,5 +1,6 @@
 // tasks/score/ideal_path.h
-// The shortest way a tool tip could have gone. Called by finish(); any thread, no state.
+// Ways a tool tip could have gone: the shortest, and the careful. Called by finish(); any thread,
+// no state.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -12,5 +13,13 @@ namespace tasks {
 /// A convex problem (sum of distances, one ball per corner), solved corner by corner.
 double shortest_tour_m(const glm::dvec3& start_m, std::span<const glm::dvec3> centre_m,
                        double radius_m);
+
+/// Length of the careful way through the port, m: to each place in order by retracting along the
+/// shaft, swinging about the port, inserting along the shaft (goal-directed movements are a
+/// retraction and a search: Chmarra et al. 2006, 2008). It swings at the depth of `start_m`, which
+/// is clear of the tissue, or at that of a place that lies less deep; a place is reached
+/// `radius_m` before its centre.
+double retraction_tour_m(const glm::dvec3& fulcrum_m, const glm::dvec3& start_m,
+                         std::span<const glm::dvec3> place_m, double radius_m);
 
 } // namespace tasks

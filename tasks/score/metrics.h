@@ -20,10 +20,16 @@ struct Metric {
     std::int64_t first_tick = 0, last_tick = 0; // samples it rests on
 };
 
+/// 61 bytes per tool and tick: 110 MB for ten minutes of three tools, and up to twice that while
+/// the vectors grow.
 struct ScoreState {
-    std::array<std::vector<glm::dvec3>, kTools> tip_m;   // 1 kHz
-    std::array<std::vector<float>, kTools> force_n;      // length of the tip force
-    std::array<std::vector<std::uint8_t>, kTools> flags; // 1 touching, 2 in view, 4 present
+    std::array<std::vector<glm::dvec3>, kTools> tip_m;     // 1 kHz
+    std::array<std::vector<glm::vec3>, kTools> shaft;      // unit, handle to tip
+    std::array<std::vector<float>, kTools> insertion_m;    // along the shaft
+    std::array<std::vector<float>, kTools> roll_rad;       // about the shaft
+    std::array<std::vector<glm::vec3>, kTools> force_on_n; // on the tip
+    std::array<std::vector<float>, kTools> force_n;        // its length
+    std::array<std::vector<std::uint8_t>, kTools> flags;   // 1 touching, 2 in view, 4 present
     std::int64_t first_tick = 0, last_tick = -1;
 };
 /// One millisecond. Ticks follow each other: a paused attempt's ticks stand still. Pure, resumable.
@@ -40,16 +46,27 @@ struct ScoreContext {
     bool forces_on = true;
 };
 
-/// All metrics, over first movement .. completion (or the last sample). Version 1 of:
+/// All metrics, over first movement .. completion (or the last sample), each as definition.h has
+/// it. Derivatives are of the 10 Hz low-passed motion. Version 1 of:
 ///   time                    s; 0 if nothing moved
-///   path_length*            m, of the 10 Hz low-passed tip
+///   path_length*            m
 ///   economy*                ideal / path_length, 0..1; ideal = shortest tour from the tip's place
 ///                           at the first movement through the balls of the targets touched so
 ///                           far, straight through obstacles; 0 if nothing was touched
-///   speed_mean*, idle*      m/s; share of time below 2 mm/s (combined: mean of the tools)
-///   ldlj*                   median over sub-movements (smoothness.h); absent without any
+///   retraction_length*      retraction_tour_m (ideal_path.h) of the same / path_length; may
+///                           exceed 1; 0 if nothing was touched
+///   depth_length*           m, sum of |changes of insertion|
+///   angular_path*, roll_path*   rad, sums of changes of the shaft's direction, of the roll
+///   speed_mean*, accel_mean*, idle*   m/s; m/s2; share of time below 2 mm/s (combined: mean of
+///                           the tools)
+///   ldlj*, sparc*           median over sub-movements (smoothness.h); absent without any
+///   jerk_norm*              smoothness.h, over the whole time (combined: lengths and integrals
+///                           added); absent below a millimetre of path
+///   bimanual                correlation of left and right tip speed while both move at 2 mm/s or
+///                           more; absent if that is not defined
 ///   out_of_view*            share of tool ticks
 ///   force_mean*, force_peak*, impulse*   N, N, N s over contact ticks; 0 without contact
+///   work*                   J, integral of max(0, F . v) over contact ticks; F on the tissue
 ///   over_force*             s above the limit (combined: any tool above it), unfiltered
 ///   over_force_episodes, errors, errors.KIND for every kind of error   counts, from the events
 /// * also per role, as id.left, id.right, id.assist, for tools that were present.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 namespace tasks {
 
@@ -47,6 +48,56 @@ std::optional<double> ldlj(std::span<const double> speed_mps, double fs_hz) {
     if (!(dimensionless > 0.0) || !std::isfinite(dimensionless))
         return {}; // at rest, or at exactly constant acceleration: no jerk to take a logarithm of
     return -std::log(dimensionless);
+}
+
+double squared_jerk_m2ps5(std::span<const glm::dvec3> path_m, double fs_hz) {
+    double sum_m2 = 0.0;
+    for (std::size_t i = 3; i < path_m.size(); ++i) {
+        const glm::dvec3 third = path_m[i] - 3.0 * (path_m[i - 1] - path_m[i - 2]) - path_m[i - 3];
+        sum_m2 += glm::dot(third, third);
+    }
+    return sum_m2 * std::pow(fs_hz, 5); // |d3p fs^3|^2 / fs
+}
+
+std::optional<double> jerk_norm(double duration_s, double length_m, double squared_jerk_m2ps5) {
+    constexpr double kShortest_m = 1e-3;
+    if (length_m < kShortest_m)
+        return {};
+    return std::sqrt(std::pow(duration_s, 5) / (2.0 * length_m * length_m) * squared_jerk_m2ps5);
+}
+
+std::optional<double> speed_correlation(std::span<const double> one_mps,
+                                        std::span<const double> other_mps) {
+    constexpr double kSteady_mps = 1e-6;
+    const std::size_t n = std::min(one_mps.size(), other_mps.size());
+    const auto both_move = [&](std::size_t i) {
+        return one_mps[i] >= kMoving_mps && other_mps[i] >= kMoving_mps;
+    };
+    double count = 0.0, mean_a = 0.0, mean_b = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (!both_move(i))
+            continue;
+        count += 1.0;
+        mean_a += one_mps[i];
+        mean_b += other_mps[i];
+    }
+    if (count < 2.0)
+        return {};
+    mean_a /= count;
+    mean_b /= count;
+    double aa = 0.0, bb = 0.0, ab = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (!both_move(i))
+            continue;
+        const double a = one_mps[i] - mean_a, b = other_mps[i] - mean_b;
+        aa += a * a;
+        bb += b * b;
+        ab += a * b;
+    }
+    const double least = kSteady_mps * kSteady_mps * count;
+    if (aa < least || bb < least)
+        return {};
+    return ab / std::sqrt(aa * bb);
 }
 
 } // namespace tasks

@@ -64,3 +64,16 @@ TEST_CASE("no path through the balls is shorter than the shortest tour") {
         RC_ASSERT(shortest_tour_m(dvec3{0.0}, centre, r) <= path + 1e-5);
     }));
 }
+
+TEST_CASE("the careful way retracts to the clear depth, swings about the port and inserts") {
+    const glm::dvec3 port{0.01, 0.02, 0.2}, down{0.0, 0.0, -1.0}, side{1.0, 0.0, 0.0};
+    const auto at = [&](double depth, double angle) {
+        return port + depth * (std::cos(angle) * down + std::sin(angle) * side);
+    };
+    const std::vector<glm::dvec3> places{at(0.14, 0.0), at(0.15, 0.5), at(0.09, 0.2)};
+    // 37 mm down to 3 mm before the first; up, over at 100 mm and down again; then up to 3 mm
+    // before the third, which lies less deep than the start, and over at that depth.
+    const double expected = 0.037 + (0.037 + 0.1 * 0.5 + 0.047) + (0.147 - 0.087) + 0.087 * 0.3;
+    CHECK(tasks::retraction_tour_m(port, at(0.1, 0.0), places, 0.003) == relative(expected));
+    CHECK(tasks::retraction_tour_m(port, at(0.1, 0.0), {}, 0.003) == 0.0);
+}

@@ -2,55 +2,15 @@
 
 #include "relative.h"
 
-#include "attempt.h"
+#include "scored.h"
 
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 using namespace tasks;
 using namespace tasks::testing;
 
 namespace {
-
-struct Scored {
-    ScoreState score;
-    Progress progress;
-    std::vector<Metric> metrics;
-};
-
-// Runs an attempt of n ticks given by `at`, which changes the resting observation.
-Scored scored(int n, const std::function<void(Observation&, double t_s)>& at,
-              ScoreContext context = {}) {
-    const Exercise exercise = two_points();
-    for (const ExerciseTarget& target : exercise.target) {
-        context.ideal_path_m.push_back(target.at_m);
-        context.ideal_role.push_back(target.role);
-    }
-    Scored out;
-    for (int i = 0; i < n; ++i) {
-        Observation seen = at_rest(exercise);
-        seen.tick = i;
-        at(seen, i * kTick_s);
-        observe(out.progress, exercise, seen);
-        observe(out.score, seen);
-    }
-    out.metrics = finish(out.score, out.progress, context);
-    return out;
-}
-
-const Metric* find(const Scored& scored, std::string_view id) {
-    for (const Metric& metric : scored.metrics)
-        if (metric.id == id)
-            return &metric;
-    return nullptr;
-}
-
-double value(const Scored& scored, std::string_view id) {
-    const Metric* metric = find(scored, id);
-    REQUIRE_MESSAGE(metric != nullptr, std::string(id));
-    return metric->value;
-}
 
 void circle(Observation& seen, double t_s) { // 20 mm radius, one turn in 4 s
     const double angle = 2.0 * std::numbers::pi * t_s / 4.0;
@@ -182,8 +142,8 @@ TEST_CASE("without forces the force metrics say that they were not felt") {
     context.forces_on = false;
     const Scored s = scored(500, circle, context);
     for (const Metric& metric : s.metrics) {
-        const bool of_force =
-            metric.id.find("force") != std::string::npos || metric.id.starts_with("impulse");
+        const bool of_force = metric.id.find("force") != std::string::npos ||
+                              metric.id.starts_with("impulse") || metric.id.starts_with("work");
         CHECK_MESSAGE(metric.felt == !of_force, metric.id);
     }
 }
