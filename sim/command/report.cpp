@@ -4,6 +4,39 @@
 
 namespace sim {
 
+nlohmann::ordered_json profile_json(const Attempt::Outcome& outcome) {
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (const tasks::ProfileRow& row : outcome.profile) {
+        nlohmann::ordered_json value;
+        if (row.value)
+            value = *row.value;
+        all.push_back({{"metric", row.metric},
+                       {"name", row.name},
+                       {"unit", row.unit},
+                       {"value", value},
+                       {"good", row.good},
+                       {"pass", row.pass},
+                       {"lower_is_better", row.lower_is_better},
+                       {"felt", row.felt},
+                       {"reached", tasks::reached_name(row.reached)},
+                       {"share", row.share}});
+    }
+    return all;
+}
+
+nlohmann::ordered_json moments_json(const Attempt::Outcome& outcome) {
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (const tasks::Moment& m : outcome.moments) {
+        all.push_back({{"tick", m.tick},
+                       {"tool", m.tool},
+                       {"place_m", {m.place_m.x, m.place_m.y, m.place_m.z}},
+                       {"kind", m.kind},
+                       {"badness", m.badness},
+                       {"text", m.text}});
+    }
+    return all;
+}
+
 nlohmann::ordered_json outcome_json(const Attempt::Outcome& outcome) {
     using nlohmann::ordered_json;
     const tasks::AttemptRow& row = outcome.row;
@@ -27,6 +60,8 @@ nlohmann::ordered_json outcome_json(const Attempt::Outcome& outcome) {
             {"seed", row.seed},
             {"log_sha256", row.log_sha256},
             {"metrics", metrics},
+            {"profile", profile_json(outcome)},
+            {"moments", moments_json(outcome)},
             {"events", events},
             {"rig",
              {{"tick_us",

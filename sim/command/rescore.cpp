@@ -15,6 +15,7 @@ namespace {
 struct Scores {
     std::map<std::string, double> recorded, now;
     bool agree = true;
+    Attempt::Outcome outcome; // of today's definitions
 };
 
 Scores rescore_attempt(tasks::Logbook& logbook, const tasks::AttemptRow& row) {
@@ -33,7 +34,8 @@ Scores rescore_attempt(tasks::Logbook& logbook, const tasks::AttemptRow& row) {
     Scores scores;
     for (const tasks::Metric& m : logbook.metrics(row.id))
         scores.recorded[m.id] = m.value;
-    for (const tasks::Metric& m : attempt.finish(row.rig).metrics)
+    scores.outcome = attempt.finish(row.rig);
+    for (const tasks::Metric& m : scores.outcome.metrics)
         scores.now[m.id] = m.value;
     scores.agree = scores.recorded == scores.now;
     return scores;
@@ -49,7 +51,9 @@ void rescore(const std::string& db, bool json) {
                            {"exercise", row.exercise},
                            {"agree", scores.agree},
                            {"recorded", scores.recorded},
-                           {"now", scores.now}});
+                           {"now", scores.now},
+                           {"profile", profile_json(scores.outcome)},
+                           {"moments", moments_json(scores.outcome)}});
             continue;
         }
         fmt::print("attempt {}  {}  {}\n", row.id, row.exercise,

@@ -2,6 +2,7 @@
 // trocar study NAME: the charts, with all their parameters on the command line.
 #include "sim/command/commands.h"
 #include "sim/study/coupling_study.h"
+#include "sim/study/levels_study.h"
 #include "sim/study/organ_study.h"
 
 #include <CLI/CLI.hpp>
@@ -108,6 +109,24 @@ void add_organ(CLI::App& study) {
     c->callback([a] { organ(*a); });
 }
 
+void add_levels(CLI::App& study) {
+    auto a = std::make_shared<LevelsStudyOptions>();
+    auto seeds = std::make_shared<std::vector<std::uint64_t>>();
+    CLI::App* c = study.add_subcommand("levels", "Levels for an exercise file from scripted hands");
+    c->add_option("exercise", a->run.exercise, "Name or file of an exercise")->required();
+    c->add_option("--scene", a->run.scene, "Name, directory or file of a scene");
+    c->add_option("--hands", a->run.hands, "Skill whose mean is the expert level");
+    c->add_option("--seeds", *seeds, "First and last")->expected(2);
+    c->add_option("--metrics", a->metrics, "Which ones");
+    c->callback([a, seeds] {
+        if (!seeds->empty()) {
+            a->first_seed = seeds->front();
+            a->last_seed = seeds->back();
+        }
+        fmt::print("{}", levels_text(run_levels_study(*a)));
+    });
+}
+
 } // namespace
 
 void add_study(CLI::App& app, int&) {
@@ -116,6 +135,7 @@ void add_study(CLI::App& app, int&) {
     c->require_subcommand(1);
     add_coupling(*c, a);
     add_organ(*c);
+    add_levels(*c);
 }
 
 } // namespace sim

@@ -131,6 +131,8 @@ Attempt::Outcome Attempt::finish(const tasks::RigReport& rig) {
     row_.valid = row_.rig.faults.empty();
     row_.ended = true;
     out.row = row_;
+    out.profile = tasks::profile(out.metrics, exercise_.level, row_.completed && row_.valid);
+    out.moments = tasks::worst_moments(score_, progress_, context_);
     out.events = progress_.events;
     if (logbook_) {
         const std::span<const tasks::Event> events(progress_.events);

@@ -6,6 +6,8 @@
 
 #include "sim/session/scene.h"
 #include "tasks/logbook/logbook.h"
+#include "tasks/score/moments.h"
+#include "tasks/score/profile.h"
 
 #include <deque>
 #include <optional>
@@ -33,6 +35,8 @@ class Attempt {
         tasks::AttemptRow row;
         std::vector<tasks::Metric> metrics;
         std::vector<tasks::Event> events;
+        std::vector<tasks::ProfileRow> profile; // against the exercise's levels
+        std::vector<tasks::Moment> moments;     // the worst three
     };
     /// Ends the attempt: score, hash, last chunk. `rig` decides with the progress if it is valid.
     Outcome finish(const tasks::RigReport& rig);

@@ -5,6 +5,7 @@
 // Called by sim, live and headless, and by every re-score.
 #pragma once
 
+#include "tasks/exercise/level.h"
 #include "tasks/exercise/observation.h"
 
 #include <string>
@@ -32,9 +33,10 @@ struct Exercise { // from assets/exercises/*.toml
     double radius_m = 3e-3; // how near a tip has to be: to a point, to the path
     double force_min_n = 0.1;
     double force_max_n = 1.0;
-    double hold_s = 0.3;         // touch_points: how long
-    double force_limit_n = 2.0;  // an error above
-    double time_limit_s = 180.0; // the attempt ends incomplete
+    double hold_s = 0.3;            // touch_points: how long
+    double force_limit_n = 2.0;     // an error above
+    double time_limit_s = 180.0;    // the attempt ends incomplete
+    std::vector<MetricLevel> level; // at most one per metric
 };
 
 /// Bytes of an exercise file. Throws BadInput with file, line, key, value and what would be

@@ -111,10 +111,10 @@ Exercise parse_exercise(std::string_view text, std::string_view file) {
     const bool path = exercise.kind == ExerciseKind::follow_path;
     if (path) {
         root.accept_only({"kind", "id", "title", "card", "role", "radius_m", "force_min_n",
-                          "force_max_n", "force_limit_n", "time_limit_s", "point"});
+                          "force_max_n", "force_limit_n", "time_limit_s", "point", "level"});
     } else {
         root.accept_only({"kind", "id", "title", "card", "radius_m", "force_min_n", "force_max_n",
-                          "hold_s", "force_limit_n", "time_limit_s", "target"});
+                          "hold_s", "force_limit_n", "time_limit_s", "target", "level"});
         exercise.hold_s = root.number("hold_s", {0.05, 10.0}, exercise.hold_s);
     }
     exercise.id = root.text("id");
@@ -130,6 +130,7 @@ Exercise parse_exercise(std::string_view text, std::string_view file) {
     if (exercise.force_max_n > exercise.force_limit_n)
         root.refuse("force_limit_n", "a number not below force_max_n");
     path ? parse_path(root, exercise) : parse_targets(root, exercise);
+    exercise.level = parse_levels(root);
     return exercise;
 }
 

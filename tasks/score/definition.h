@@ -12,6 +12,7 @@ enum class Better : std::uint8_t { less, more, neither };
 
 struct MetricDefinition {
     std::string_view id;
+    std::string_view name; // for people
     int version = 1;
     std::string_view unit; // SI, "1" for shares, counts and logarithms
     Better better = Better::less;

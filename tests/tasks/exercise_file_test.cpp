@@ -72,8 +72,7 @@ TEST_CASE("a mistake in an exercise file is named by file, line, key, value and 
           "x.toml:13: at_mm = [20,0]: [x, y, z] in millimetres, each -500 to 500");
     CHECK(said("force_limit_n = 3", "force_limt_n = 3") ==
           "x.toml:5: force_limt_n = 3: unknown key; accepted here: kind, id, title, card, "
-          "radius_m, "
-          "force_min_n, force_max_n, hold_s, force_limit_n, time_limit_s, target");
+          "radius_m, force_min_n, force_max_n, hold_s, force_limit_n, time_limit_s, target, level");
     CHECK(said("title = \"T\"\n", "") == "x.toml:1: title is missing: text in quotes");
     CHECK(said("id = \"2\"", "id = \"1\"") ==
           "x.toml:11: id = \"1\": an id that no other target has");
@@ -100,6 +99,45 @@ TEST_CASE("no target and seventeen targets are refused") {
         many += "[[target]]\nid = \"" + std::to_string(i) + "\"\nrole = \"left\"\nat_mm = [" +
                 std::to_string(10 * i) + ", 0, 0]\n";
     CHECK(message(many).starts_with("x.toml:71: id = \"16\": at most 16"));
+}
+
+TEST_CASE("levels are optional, and keep their order") {
+    CHECK(parse_exercise(kGood, "x.toml").level.empty());
+    const auto level = parse_exercise(kGood + "[[level]]\nmetric = \"time\"\ngood = 40\n"
+                                              "pass = 50.5\n[[level]]\n"
+                                              "metric = \"economy.left\"\ngood = 0.5\n"
+                                              "pass = 0.4\n",
+                                      "x.toml")
+                           .level;
+    REQUIRE(level.size() == 2);
+    CHECK(level[0].metric == "time");
+    CHECK(level[0].good == 40.0);
+    CHECK(level[0].pass == 50.5);
+    CHECK(level[1].metric == "economy.left");
+    CHECK(level[1].pass == 0.4);
+}
+
+TEST_CASE("a level of no metric, without a direction, twice or the wrong way round is refused") {
+    const auto said = [](const std::string& metric, const std::string& good,
+                         const std::string& pass) {
+        return message(kGood + "[[level]]\nmetric = \"" + metric + "\"\ngood = " + good +
+                       "\npass = " + pass + "\n");
+    };
+    CHECK(said("time", "40", "40") == "accepted");
+    CHECK(said("economy", "0.5", "0.5") == "accepted");
+    CHECK(said("tme", "1", "2") == "x.toml:15: metric = \"tme\": a metric's id, such as \"time\" "
+                                   "or \"path_length.left\"");
+    CHECK(said("idle", "1", "2") ==
+          "x.toml:15: metric = \"idle\": a metric of which less or more is better");
+    CHECK(said("time", "40", "39") ==
+          "x.toml:17: pass = 39: a number not below good: less is better");
+    CHECK(said("economy", "0.4", "0.5") ==
+          "x.toml:17: pass = 0.5: a number not above good: more is better");
+    CHECK(said("time", "nan", "39").starts_with("x.toml:16: good = nan: a number from"));
+    CHECK(said("time", "40", "50\n[[level]]\nmetric = \"time\"\ngood = 1\npass = 2") ==
+          "x.toml:19: metric = \"time\": a metric that no other level has");
+    CHECK(message(kGood + "[[level]]\ngood = 1\npass = 1\n") ==
+          "x.toml:14: metric is missing: text in quotes");
 }
 
 TEST_CASE("what is not TOML is refused with its line") {
@@ -131,6 +169,7 @@ TEST_CASE("the shipped exercise has nine targets, three for each tool") {
     for (const tasks::ExerciseTarget& target : exercise.target)
         ++roles[static_cast<std::size_t>(target.role)];
     CHECK(roles == std::array<int, 4>{3, 3, 3, 0});
+    CHECK(exercise.level.size() == 7);
 }
 
 namespace {
