@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
@@ -165,6 +164,8 @@ const view::ViewFrame& Stage::frame(Exchange& exchange) {
     frame_.messages = {"Not a medical device"};
     if (by_hand_)
         frame_.messages.push_back("Mouse and keyboard: forces are drawn, not felt");
+    if (!note_.empty())
+        frame_.messages.push_back(note_);
     return frame_;
 }
 
@@ -190,35 +191,6 @@ void Stage::steer(const view::UserInput& input, double frame_s, Exchange& exchan
 
 void leave_cores_to_the_loops() {
     setenv("LP_NUM_THREADS", "1", 0);
-}
-
-view::ScoreModel score_model(const Attempt::Outcome& outcome, const std::string& saved) {
-    view::ScoreModel score;
-    score.title = outcome.row.exercise;
-    score.completed = outcome.row.completed;
-    score.valid = outcome.row.valid;
-    score.invalid_reasons = outcome.row.rig.faults;
-    score.saved = saved;
-    for (const tasks::Metric& m : outcome.metrics) {
-        if (m.id.find('.') != std::string::npos)
-            continue; // per tool and per kind: the review page's business
-        score.metrics.push_back({.name = m.id,
-                                 .value = m.value,
-                                 .unit = m.unit == "1" ? "" : m.unit,
-                                 .lower_is_better = m.lower_is_better,
-                                 .felt = m.felt,
-                                 .decimals = m.unit == "1" && m.id == "errors" ? 0 : 2});
-    }
-    for (const tasks::Event& e : outcome.events) {
-        if (!tasks::is_error(e.kind))
-            continue;
-        score.errors.push_back(
-            {.time_s = double(e.tick) * kTick_s,
-             .text = fmt::format("{}: tool {}", tasks::event_name(e.kind),
-                                 e.tool >= 0 ? tasks::role_name(tasks::Role(e.tool))
-                                             : std::string_view("-"))});
-    }
-    return score;
 }
 
 } // namespace sim

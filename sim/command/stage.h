@@ -16,6 +16,9 @@ class Stage {
     /// The world as the newest messages have it.
     const view::ViewFrame& frame(Exchange& exchange);
 
+    /// A sentence that stands on the picture from now on.
+    void say(std::string note) { note_ = std::move(note); }
+
     /// Moves the active tool's goal by what the person did since the last frame.
     void steer(const view::UserInput& input, double frame_s, Exchange& exchange);
 
@@ -26,6 +29,7 @@ class Stage {
 
     const Session& session_;
     bool by_hand_;
+    std::string note_;
     view::ViewFrame frame_;
     std::vector<std::vector<glm::vec3>> rest_m_;
     std::vector<std::vector<glm::vec3>> rest_normal_;
@@ -36,8 +40,5 @@ class Stage {
 
 /// A software renderer takes every core by default, the 1 kHz loop's too: call before a window.
 void leave_cores_to_the_loops();
-
-/// Score screen for an outcome.
-view::ScoreModel score_model(const Attempt::Outcome& outcome, const std::string& saved);
 
 } // namespace sim

@@ -2,9 +2,11 @@
 // trocar train: the window. Menu, instruction card, the expert's demonstration, the attempt, the
 // score. The loops run on their own threads; this one draws and never makes them wait.
 #include "sim/command/commands.h"
+#include "sim/command/score_model.h"
 #include "sim/command/stage.h"
 #include "sim/io/files.h"
 #include "sim/io/guard.h"
+#include "sim/session/moment_replay.h"
 #include "sim/session/scene_place.h"
 
 #include <CLI/CLI.hpp>
@@ -74,6 +76,8 @@ class Trainer {
                 perform(true);
             else if (input.action == Action::start)
                 perform(false);
+            else if (input.action == Action::show)
+                show_moment(input.index);
         }
     }
 
@@ -84,6 +88,8 @@ class Trainer {
         picture("card");
         perform(true);
         picture("score");
+        if (!outcome_.moments.empty())
+            show_moment(0);
     }
 
   private:
@@ -129,6 +135,7 @@ class Trainer {
         if (!demo)
             session->crew = make_mouse_crew(session->haptics);
         session->exchange->surface_wanted = true;
+        session->keep_recording = true;
         Stage stage(*session, !demo, next_surface_id_);
         next_surface_id_ += static_cast<int>(session->tissue.bodies.size());
 
@@ -140,14 +147,49 @@ class Trainer {
             session->recorded = true;
         }
         screens_.screen = demo ? view::Screen::demo : view::Screen::run;
-        const Attempt::Outcome outcome =
+        outcome_ =
             run_realtime(*session, demo ? nullptr : &logbook_, id, 0.0,
                          [&](Exchange& exchange) { return one_frame(stage, exchange, demo); });
-        screens_.score =
-            score_model(outcome, demo ? "" : fmt::format("attempt {} in {}", id, log_path_));
-        if (demo)
-            screens_.score.title += " (demonstration)";
+        const std::string& title = exercises_[chosen_].title;
+        screens_.score = score_model(outcome_, demo ? title + " (demonstration)" : title,
+                                     demo ? "" : fmt::format("attempt {} in {}", id, log_path_));
         screens_.screen = view::Screen::score;
+    }
+
+    // The moment again, as it was recorded; then the score page, as before. A slow machine shows
+    // it slower instead of leaving pictures out.
+    void show_moment(int index) {
+        if (index < 0 || index >= static_cast<int>(outcome_.moments.size()))
+            return;
+        const tasks::Moment& moment = outcome_.moments[index];
+        MomentReplay replay(outcome_.row, outcome_.chunks, moment.tick, a_.scene);
+        Stage stage(replay.session(), false, next_surface_id_);
+        next_surface_id_ += static_cast<int>(replay.session().tissue.bodies.size());
+        stage.say(moment.text);
+        screens_.screen = view::Screen::replay;
+        constexpr int kSlowest_ticks = 40; // a picture
+        double due_ticks = 0.0;
+        while (!replay.over() && !asked_to_stop()) {
+            const view::UserInput input =
+                window_.draw(stage.frame(*replay.session().exchange), screens_);
+            quit_ = quit_ || input.action == view::Action::quit;
+            if (quit_ || input.action == view::Action::abandon)
+                break;
+            due_ticks += std::clamp(window_.cost().frame_ms, 1.0, double(kSlowest_ticks));
+            const int ticks = static_cast<int>(due_ticks);
+            due_ticks -= ticks;
+            replay.advance(ticks);
+            shoot_replay(stage.frame(*replay.session().exchange).time_s, moment);
+        }
+        screens_.screen = view::Screen::score;
+    }
+
+    // With --screenshots: one picture of the moment itself.
+    void shoot_replay(double now_s, const tasks::Moment& moment) {
+        if (a_.shots.empty() || replay_shot_ || now_s < double(moment.tick) * kTick_s)
+            return;
+        replay_shot_ = true;
+        window_.screenshot((std::filesystem::path(a_.shots) / "replay.png").string());
     }
 
     bool one_frame(Stage& stage, Exchange& exchange, bool demo) {
@@ -200,7 +242,8 @@ class Trainer {
     std::vector<std::string> names_, trainee_ids_;
     std::vector<tasks::Exercise> exercises_;
     int chosen_ = 0, next_surface_id_ = 1, shots_ = 0;
-    bool quit_ = false;
+    Attempt::Outcome outcome_; // of the score page
+    bool quit_ = false, replay_shot_ = false;
 };
 
 } // namespace

@@ -103,12 +103,17 @@ void Attempt::add_event(const tasks::Event& event) {
 void Attempt::flush_chunk() {
     if (ticks_.empty())
         return;
+    std::vector<std::byte> bytes;
+    if (logbook_ || keep_)
+        bytes = tasks::encode_chunk(ticks_, steps_);
     if (logbook_) {
-        logbook_->append_chunk(row_.id, ticks_.front().tick, tasks::encode_chunk(ticks_, steps_));
+        logbook_->append_chunk(row_.id, ticks_.front().tick, bytes);
         const std::span<const tasks::Event> events(progress_.events);
         logbook_->append_events(row_.id, events.subspan(events_logged_));
         events_logged_ = events.size();
     }
+    if (keep_)
+        kept_.push_back(std::move(bytes));
     ticks_.clear();
     steps_.clear();
 }
@@ -133,6 +138,7 @@ Attempt::Outcome Attempt::finish(const tasks::RigReport& rig) {
     out.row = row_;
     out.profile = tasks::profile(out.metrics, exercise_.level, row_.completed && row_.valid);
     out.moments = tasks::worst_moments(score_, progress_, context_);
+    out.chunks = std::move(kept_);
     out.events = progress_.events;
     if (logbook_) {
         const std::span<const tasks::Event> events(progress_.events);

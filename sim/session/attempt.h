@@ -22,6 +22,9 @@ class Attempt {
             std::vector<tasks::Target> rest_targets, tasks::AttemptRow row,
             tasks::Logbook* logbook);
 
+    /// What was recorded goes into the outcome too, compressed: 0.8 MB a minute.
+    void keep_recording() { keep_ = true; }
+
     /// FEM steps arrive before the ticks that adopt them.
     void add(const tasks::StepTrace& step);
     void add(const tasks::TickTrace& tick);
@@ -35,8 +38,9 @@ class Attempt {
         tasks::AttemptRow row;
         std::vector<tasks::Metric> metrics;
         std::vector<tasks::Event> events;
-        std::vector<tasks::ProfileRow> profile; // against the exercise's levels
-        std::vector<tasks::Moment> moments;     // the worst three
+        std::vector<tasks::ProfileRow> profile;     // against the exercise's levels
+        std::vector<tasks::Moment> moments;         // the worst three
+        std::vector<std::vector<std::byte>> chunks; // of keep_recording(), as in the logbook
     };
     /// Ends the attempt: score, hash, last chunk. `rig` decides with the progress if it is valid.
     Outcome finish(const tasks::RigReport& rig);
@@ -57,7 +61,8 @@ class Attempt {
     tasks::LogHash hash_;
     tasks::Observation seen_;
     TargetPlaces target_um_{};
-    bool placed_ = false;
+    bool placed_ = false, keep_ = false;
+    std::vector<std::vector<std::byte>> kept_;
     std::deque<tasks::StepTrace> waiting_; // steps that no tick has adopted yet
     std::vector<tasks::TickTrace> ticks_;  // of the running chunk
     std::vector<tasks::StepTrace> steps_;

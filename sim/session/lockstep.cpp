@@ -21,6 +21,8 @@ Attempt::Outcome run_lockstep(Session& session, tasks::Logbook* logbook, std::in
     tasks::AttemptRow row = attempt_row(session, false);
     row.id = attempt_id;
     Attempt attempt(session.scene.scene, session.exercise, session.rest_targets, row, logbook);
+    if (session.keep_recording)
+        attempt.keep_recording();
     Exchange& exchange = *session.exchange;
     const std::int64_t period = session.haptics.coupling_config.period_ticks;
 

@@ -110,14 +110,7 @@ struct Recorder {
     }
 
     void publish_progress() {
-        const tasks::Progress& p = attempt.progress();
-        ProgressNow now;
-        now.tick = last_tick;
-        now.next_target = p.next;
-        now.hold_share = tasks::share_at_next(p, session.exercise);
-        now.complete = p.complete;
-        for (const tasks::Event& event : p.events)
-            now.errors += tasks::is_error(event.kind);
+        const ProgressNow now = progress_now(attempt, session.exercise);
         Exchange& exchange = *session.exchange;
         exchange.progress.back() = now;
         exchange.progress.publish();
@@ -147,6 +140,8 @@ Attempt::Outcome run_realtime(Session& session, tasks::Logbook* logbook, std::in
     tasks::AttemptRow row = attempt_row(session, true);
     row.id = attempt_id;
     Attempt attempt(session.scene.scene, session.exercise, session.rest_targets, row, logbook);
+    if (session.keep_recording)
+        attempt.keep_recording();
     Exchange& exchange = *session.exchange;
     Counts counts;
     Recorder recorder{session, attempt, {}, 0};

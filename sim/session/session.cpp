@@ -177,6 +177,18 @@ tasks::HandSight sight_of(const Session& session, const tasks::TickTrace& trace,
             .done = done};
 }
 
+ProgressNow progress_now(const Attempt& attempt, const tasks::Exercise& exercise) {
+    const tasks::Progress& p = attempt.progress();
+    ProgressNow now;
+    now.tick = attempt.seen().tick;
+    now.next_target = p.next;
+    now.hold_share = tasks::share_at_next(p, exercise);
+    now.complete = p.complete;
+    for (const tasks::Event& event : p.events)
+        now.errors += tasks::is_error(event.kind);
+    return now;
+}
+
 tasks::StepTrace run_step(Session& session, const ToolsNow& tools, TissueAnswer& answer) {
     const auto start = std::chrono::steady_clock::now();
     StepOutcome outcome = tissue_step(session.tissue, tools, answer);

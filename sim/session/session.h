@@ -32,7 +32,8 @@ struct Session {
     std::string exercise_text;
     std::vector<tasks::Target> rest_targets;
     TargetPlaces rest_target_um{};
-    bool recorded = false; // into a logbook: the window says so
+    bool recorded = false;       // into a logbook: the window says so
+    bool keep_recording = false; // in the outcome: the window shows moments of it again
     TissueRig tissue;
     HapticRig haptics;
     Crew crew;
@@ -65,6 +66,9 @@ tasks::AttemptRow attempt_row(const Session& session, bool realtime);
 /// What the person at the tools sees after a tick.
 tasks::HandSight sight_of(const Session& session, const tasks::TickTrace& trace, int next_target,
                           bool done);
+
+/// How far the fold is, for hands and screen.
+ProgressNow progress_now(const Attempt& attempt, const tasks::Exercise& exercise);
 
 /// One FEM step with bookkeeping and timing.
 tasks::StepTrace run_step(Session& session, const ToolsNow& tools, TissueAnswer& answer);

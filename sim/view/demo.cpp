@@ -76,13 +76,22 @@ Screens pages() {
         true};
     s.score.title = "Touch the points: B. Resident";
     s.score.completed = true;
-    s.score.valid = false;
-    s.score.invalid_reasons = {"12 deadlines missed at 1 kHz"};
-    s.score.metrics = {{"Time", 82.4, "s", true, true, true, 1, Verdict::bad, "at most 60 s"},
+    s.score.valid = true;
+    s.score.metrics = {{"Time", 82.4, "s", true, true, true, 1},
                        {"Path length", 1.92, "m"},
-                       {"Economy", 0.61, "", false, true, true, 2, Verdict::good, "at least 0.50"},
+                       {"Economy", 0.61, "", false},
                        {"Peak force", 2.13, "N", true, true, false},
                        {"Bimanual correlation", 0.21, "", true, false}};
+    using Mark = ProfileBar::Mark;
+    s.score.profile = {
+        {"Time", "82.4 s", "pass: at most 60 s", "missed", Mark::missed, 0.2},
+        {"Economy of path", "0.61", "pass: at least 0.50", "passed", Mark::pass, 0.7},
+        {"Errors", "2", "pass: at most 3", "expert level", Mark::good, 0.95},
+        {"Peak force", "not felt", "pass: at most 1.2 N", "not judged", Mark::not_judged, 0.0}};
+    s.score.moments = {{31.2, "The right tool pressed with 2.1 N. The limit is 2.0 N."},
+                       {48.0, "The left tool touched the tissue away from every point."},
+                       {70.5, "No tool moved for 6.2 s."}};
+    s.score.moments_can_be_shown = true;
     s.score.errors = {{31.2, "right: 2.13 N at target 3"},
                       {48.0, "left: touched away from any target"}};
     s.score.saved = "Kept in the logbook as attempt 17.";
@@ -96,8 +105,9 @@ void take_pictures(const std::string& folder, World& world, Screens& screens, in
     options.text_scale = 0.01 * percent;
     Window window(options);
     const std::pair<Screen, const char*> all[] = {
-        {Screen::menu, "menu"}, {Screen::card, "card"},     {Screen::demo, "demo"},
-        {Screen::run, "run"},   {Screen::paused, "paused"}, {Screen::score, "score"}};
+        {Screen::menu, "menu"},    {Screen::card, "card"},     {Screen::demo, "demo"},
+        {Screen::run, "run"},      {Screen::paused, "paused"}, {Screen::score, "score"},
+        {Screen::replay, "replay"}};
     for (const auto& [w, h] : {std::pair{1280, 720}, std::pair{800, 600}}) {
         window.resize(w, h);
         for (const auto& [screen, name] : all) {

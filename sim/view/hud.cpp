@@ -179,7 +179,8 @@ void draw_foot(const Pen& pen, Screen screen) {
     const float em = pen.em, line = pen.height - 1.55F * em;
     pen.list.AddRectFilled({0.0F, pen.height - 1.85F * em}, {pen.width, pen.height}, ink::panel);
     const std::string_view keys =
-        pen.narrow()             ? "P pause   Esc forces off"
+        screen == Screen::replay ? "Backspace back to score"
+        : pen.narrow()           ? "P pause   Esc forces off"
         : screen == Screen::demo ? "P pause   Backspace end   M sound   Esc forces off"
         : pen.width < 66.0F * em
             ? "P pause   Tab tool   Esc forces off"
@@ -206,14 +207,15 @@ void draw_hud(const ViewFrame& frame, Screen screen, const Fonts& fonts) {
     draw_counters(pen, frame);
     draw_forces(pen, frame);
     const float top_em = pen.narrow() ? 3.0F : 0.0F; // the next target stands in a second row
-    const bool demo = screen == Screen::demo;
-    draw_messages(pen, frame, demo && !pen.narrow() ? 7.2F : 4.3F + top_em);
+    const bool shown = screen == Screen::demo || screen == Screen::replay;
+    const char* word = screen == Screen::demo ? "Demonstration" : "Replay";
+    draw_messages(pen, frame, shown && !pen.narrow() ? 7.2F : 4.3F + top_em);
     draw_foot(pen, screen);
-    if (demo && pen.narrow()) // between the clock and the counters
+    if (shown && pen.narrow()) // between the clock and the counters
         centred(pen, fonts.body, 0.5F * (pen.width + 0.5F * pen.em), 1.8F * pen.em, ink::warn,
-                "Demonstration");
-    else if (demo)
-        centred(pen, fonts.title, 0.5F * pen.width, 4.2F * pen.em, ink::warn, "Demonstration");
+                word);
+    else if (shown)
+        centred(pen, fonts.title, 0.5F * pen.width, 4.2F * pen.em, ink::warn, word);
 }
 
 } // namespace view

@@ -27,6 +27,8 @@ Action action_of(const KeyFrame& keys, Screen screen, bool widgets_have_keys) no
         return on(Key::escape) || on(Key::backspace) ? Action::abandon
                : on(Key::p)                          ? Action::pause
                                                      : Action::none;
+    case Screen::replay:
+        return on(Key::escape) || on(Key::backspace) ? Action::abandon : Action::none;
     case Screen::run:
         return on(Key::p) ? Action::pause : Action::none;
     case Screen::paused:

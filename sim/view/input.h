@@ -6,6 +6,7 @@
 //   F              forces on again
 //   P              pause, resume            Backspace  abandon (when paused)
 //   Enter          start (card), resume (paused), menu (score)    D  demonstration (card)
+//   Backspace      on a replay: back to the score (Esc too)
 //   Tab            next tool                Shift  slow and fine
 //   A D, S W, Q E  the active tool left right, down up, away nearer
 //   R T            roll left, right         Space or left button  close the jaw
@@ -30,7 +31,8 @@ enum class Action {
     demo,           // card: show the expert
     pause,
     resume,
-    abandon, // run, paused: end the attempt incomplete; demo: end the demonstration
+    abandon, // run, paused: end the attempt incomplete; demo, replay: end what is shown
+    show,    // score: `index` is the moment to see again
     back,    // card, score: to the menu
     forces_on,
     quit // the window was closed, or Ctrl+Q

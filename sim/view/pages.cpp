@@ -2,9 +2,10 @@
 // One panel in the middle of the window per page, never larger than the window: it scrolls.
 #include "sim/view/pages.h"
 
-#include <algorithm>
+#include "sim/view/page_parts.h"
+#include "sim/view/score_page.h"
 
-#include <fmt/format.h>
+#include <algorithm>
 
 namespace view {
 namespace {
@@ -13,7 +14,8 @@ constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFla
                                     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                                     ImGuiWindowFlags_NoCollapse;
 
-/// A panel in the middle, `wide` and `tall` in body heights, at most the window less a margin.
+} // namespace
+
 void begin_panel(const char* name, float wide, float tall, bool fresh) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     const float em = ImGui::GetFontSize();
@@ -39,7 +41,6 @@ void quiet(const std::string& text) {
     ImGui::PopStyleColor();
 }
 
-/// Large letters in a small window leave this page little room: it closes up.
 bool is_narrow() {
     return ImGui::GetWindowWidth() < 40.0F * ImGui::GetFontSize();
 }
@@ -49,8 +50,7 @@ void bullet(const std::string& text) {
     ImGui::TextWrapped("%s", text.c_str());
 }
 
-/// A large button, smaller on a narrow page; `first` takes the keyboard when the page appears.
-bool button(const Fonts& fonts, const char* label, bool first, float wide = 11.0F) {
+bool button(const Fonts& fonts, const char* label, bool first, float wide) {
     const float em = ImGui::GetFontSize();
     const bool narrow = is_narrow();
     ImGui::PushFont(narrow ? fonts.body : fonts.large);
@@ -60,6 +60,8 @@ bool button(const Fonts& fonts, const char* label, bool first, float wide = 11.0
         ImGui::SetItemDefaultFocus();
     return pressed;
 }
+
+namespace {
 
 bool exercise_entry(const Fonts& fonts, const MenuExercise& exercise, int index) {
     const float em = ImGui::GetFontSize();
@@ -179,69 +181,6 @@ void draw_pause(const Fonts& fonts, bool fresh, UserInput& input) {
     ImGui::End();
 }
 
-void metric_row(const ScoreMetric& metric) {
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    ImGui::TextWrapped("%s", metric.name.c_str());
-    ImGui::TableNextColumn();
-    if (metric.felt)
-        ImGui::TextWrapped(
-            "%s", fmt::format("{:.{}f} {}", metric.value, metric.decimals, metric.unit).c_str());
-    else
-        quiet("not felt");
-    ImGui::TableNextColumn();
-    if (metric.directed)
-        quiet(metric.lower_is_better ? "less is better" : "more is better");
-    ImGui::TableNextColumn();
-    if (metric.verdict == Verdict::none) {
-        quiet(metric.level);
-        return;
-    }
-    const bool good = metric.verdict == Verdict::good;
-    ImGui::PushStyleColor(ImGuiCol_Text, good ? ink::good : ink::bad);
-    ImGui::TextWrapped("%s  %s", good ? "reached" : "missed", metric.level.c_str());
-    ImGui::PopStyleColor();
-}
-
-void draw_score(const ScoreModel& score, const Fonts& fonts, bool fresh, UserInput& input) {
-    begin_panel("score", 52.0F, 40.0F, fresh);
-    heading(fonts, score.title);
-    ImGui::PushStyleColor(ImGuiCol_Text, score.completed ? ink::good : ink::warn);
-    ImGui::TextUnformatted(score.completed ? "Completed." : "Not completed.");
-    ImGui::PopStyleColor();
-    if (!score.valid) {
-        ImGui::PushStyleColor(ImGuiCol_Text, ink::bad);
-        ImGui::TextWrapped("Not valid: the rig was at fault, not the hands.");
-        for (const std::string& reason : score.invalid_reasons)
-            bullet(reason);
-        ImGui::PopStyleColor();
-    }
-    const float em = ImGui::GetFontSize();
-    const float room = std::max(ImGui::GetContentRegionAvail().y - 5.0F * em, 6.0F * em);
-    ImGui::BeginChild("numbers", {0.0F, room});
-    constexpr ImGuiTableFlags kRows = ImGuiTableFlags_RowBg;
-    if (ImGui::BeginTable("metrics", 4, kRows)) {
-        for (const float wide : {15.0F, 9.0F, 9.0F, 13.0F})
-            ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, wide);
-        for (const ScoreMetric& metric : score.metrics)
-            metric_row(metric);
-        ImGui::EndTable();
-    }
-    ImGui::Spacing();
-    ImGui::Text("Errors: %d", static_cast<int>(score.errors.size()));
-    for (const ScoreError& error : score.errors)
-        bullet(fmt::format("{:.1f} s  {}", error.time_s, error.text));
-    ImGui::EndChild();
-    quiet(score.saved.empty() ? "For training, not for credentialing."
-                              : score.saved + "  For training, not for credentialing.");
-    if (button(fonts, "Menu", true))
-        input.action = Action::back;
-    ImGui::SameLine();
-    if (button(fonts, "Again", false))
-        input.action = Action::start;
-    ImGui::End();
-}
-
 } // namespace
 
 void draw_page(const Screens& screens, const Fonts& fonts, bool fresh, UserInput& input) {
@@ -256,6 +195,7 @@ void draw_page(const Screens& screens, const Fonts& fonts, bool fresh, UserInput
         return draw_score(screens.score, fonts, fresh, input);
     case Screen::run:
     case Screen::demo:
+    case Screen::replay:
         return;
     }
 }

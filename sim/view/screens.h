@@ -8,7 +8,7 @@
 
 namespace view {
 
-enum class Screen { menu, card, demo, run, paused, score };
+enum class Screen { menu, card, demo, run, paused, score, replay };
 
 struct MenuExercise {
     std::string title;
@@ -30,8 +30,6 @@ struct CardModel {
     bool demo_available = true;
 };
 
-enum class Verdict { none, good, bad };
-
 struct ScoreMetric {
     std::string name;
     double value = 0.0;
@@ -40,11 +38,25 @@ struct ScoreMetric {
     bool directed = true; // false: neither way is better, no arrow
     bool felt = true;     // false: reads "not felt"
     int decimals = 2;
-    Verdict verdict = Verdict::none; // against a level, if one is set
-    std::string level{};             // "< 60 s", empty: no level
 };
 
 struct ScoreError {
+    double time_s = 0.0;
+    std::string text;
+};
+
+/// One metric against the levels of its exercise.
+struct ProfileBar {
+    enum class Mark { good, pass, missed, not_judged };
+    std::string name, value, limit; // "Time", "47.2 s", "at most 49.5 s"
+    std::string word;               // what the mark means: "expert level", "missed"
+    Mark mark = Mark::not_judged;
+    double share = 0.0;                        // length, longer is better
+    double pass_share = 0.5, good_share = 0.9; // where the marks of both levels stand
+};
+
+/// A moment worth seeing again.
+struct ScoreMoment {
     double time_s = 0.0;
     std::string text;
 };
@@ -56,6 +68,9 @@ struct ScoreModel {
     std::vector<std::string> invalid_reasons;
     std::vector<ScoreMetric> metrics;
     std::vector<ScoreError> errors;
+    std::vector<ProfileBar> profile;
+    std::vector<ScoreMoment> moments; // each with a button if moments_can_be_shown
+    bool moments_can_be_shown = false;
     std::string saved; // where it was kept, in words; empty: nowhere
 };
 

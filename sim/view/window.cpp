@@ -194,7 +194,8 @@ UserInput Window::Parts::draw_widgets(const ViewFrame& shown, const Screens& scr
         input.action = Action::select; // nothing chosen yet: the first one
         input.index = 0;
     }
-    const bool live = screens.screen == Screen::run || screens.screen == Screen::demo;
+    const bool live = screens.screen == Screen::run || screens.screen == Screen::demo ||
+                      screens.screen == Screen::replay;
     if (live || screens.screen == Screen::paused)
         draw_hud(shown, screens.screen, fonts);
     if (!live) // what lies behind a page steps back

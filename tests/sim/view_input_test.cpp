@@ -8,8 +8,8 @@ using namespace view;
 
 namespace {
 
-constexpr Screen kScreens[] = {Screen::menu, Screen::card,   Screen::demo,
-                               Screen::run,  Screen::paused, Screen::score};
+constexpr Screen kScreens[] = {Screen::menu,   Screen::card,  Screen::demo,  Screen::run,
+                               Screen::paused, Screen::score, Screen::replay};
 
 KeyFrame down(std::initializer_list<Key> keys) {
     KeyFrame frame;
@@ -50,6 +50,8 @@ TEST_CASE("Every screen is left by a key alone") {
     CHECK(action(Key::enter, Screen::paused) == Action::resume);
     CHECK(action(Key::backspace, Screen::paused) == Action::abandon);
     CHECK(action(Key::enter, Screen::score) == Action::back);
+    CHECK(action(Key::backspace, Screen::replay) == Action::abandon);
+    CHECK(action(Key::escape, Screen::replay) == Action::abandon);
     for (const Screen screen : kScreens)
         CHECK(map_keys(down({Key::control, Key::q}), screen).action == Action::quit);
 }

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include <doctest/doctest.h>
+#include <imgui.h>
 #include <png.h>
 
 using namespace view;
@@ -79,8 +80,8 @@ TEST_CASE("Every screen draws a picture of its own") {
     screens.card.title = "Touch the points";
     screens.score.title = "Score";
     std::vector<Shot> shots;
-    for (const Screen screen :
-         {Screen::menu, Screen::card, Screen::demo, Screen::run, Screen::paused, Screen::score}) {
+    for (const Screen screen : {Screen::menu, Screen::card, Screen::demo, Screen::run,
+                                Screen::paused, Screen::score, Screen::replay}) {
         screens.screen = screen;
         shots.push_back(shot_of(window, frame, screens));
         CHECK(shots.back().w == 800);
@@ -105,6 +106,56 @@ TEST_CASE("What a page is told, it shows") {
         CHECK(difference(shot(screen, "Path", 0.0), shot(screen, "Tubes", 0.0), 40).count > 30);
     for (const Screen screen : {Screen::demo, Screen::run, Screen::paused})
         CHECK(difference(shot(screen, "", 0.0), shot(screen, "", 83.0), 20).count > 30);
+}
+
+TEST_CASE("A bar of the profile is as long as its share, and its mark is another shape") {
+    Window window(hidden(1280, 720));
+    Screens screens;
+    screens.screen = Screen::score;
+    const auto shot = [&](double share, ProfileBar::Mark mark) {
+        screens.score.profile = {{"Time", "1 s", "", "", mark, share}};
+        return shot_of(window, {}, screens);
+    };
+    using Mark = ProfileBar::Mark;
+    // 13 letters of 16 px; the fill is brighter than its track
+    const Box longer = difference(shot(0.1, Mark::pass), shot(0.4, Mark::pass), 40);
+    CHECK(std::abs((longer.right - longer.left + 1) - 0.3 * 13 * 16) <= 3.0);
+    std::vector<Shot> marks;
+    for (const Mark mark : {Mark::good, Mark::pass, Mark::missed, Mark::not_judged})
+        marks.push_back(shot(0.0, mark));
+    for (std::size_t i = 0; i < marks.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            CHECK(difference(marks[i], marks[j], 40).count > 10);
+}
+
+TEST_CASE("The arrow keys reach every moment's button, and Space shows it") {
+    Window window(hidden(1280, 720));
+    Screens screens;
+    screens.screen = Screen::score;
+    screens.score.moments = {{1.0, "One."}, {2.0, "Two."}, {3.0, "Three."}};
+    screens.score.moments_can_be_shown = true;
+    const auto press = [&](ImGuiKey key) {
+        bool& down = ImGui::GetIO().KeysDown[ImGui::GetIO().KeyMap[key]];
+        down = true;
+        UserInput input = window.draw({}, screens);
+        down = false;
+        const UserInput after = window.draw({}, screens);
+        return after.action == Action::none ? input : after;
+    };
+    for (int i = 0; i < 3; ++i)
+        window.draw({}, screens);
+    std::vector<int> shown;
+    for (int up = 0; up < 3; ++up) { // from the menu button, the last one is the nearest
+        press(ImGuiKey_UpArrow);
+        const UserInput input = press(ImGuiKey_Space);
+        CHECK(input.action == Action::show);
+        shown.push_back(input.index);
+    }
+    CHECK(shown == std::vector<int>{2, 1, 0});
+    screens.score.moments_can_be_shown = false; // nothing was recorded: no buttons
+    window.draw({}, screens);
+    press(ImGuiKey_UpArrow);
+    CHECK(press(ImGuiKey_Space).action != Action::show);
 }
 
 TEST_CASE("A waiting target in the picture is as wide as its 3 mm project, and 12 px at least") {
