@@ -27,7 +27,7 @@ view::ProfileBar bar_of(const tasks::ProfileRow& row) {
                             : number(*row.value) + plain_unit(row.unit);
     bar.limit = fmt::format("pass: {} {}", row.lower_is_better ? "at most" : "at least",
                             number(row.pass) + plain_unit(row.unit));
-    bar.share = row.felt ? row.share : 0.0;
+    bar.share = row.reached == tasks::Reached::not_judged ? 0.0 : row.share;
     bar.pass_share = tasks::kShareAtPass;
     bar.good_share = tasks::kShareAtGood;
     switch (row.reached) {
