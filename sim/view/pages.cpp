@@ -155,6 +155,10 @@ void draw_card(const CardModel& card, const Fonts& fonts, bool fresh, UserInput&
     ImGui::Spacing();
     for (const std::string& limit : card.limits)
         bullet(limit);
+    ImGui::Spacing();
+    quiet(
+        "Mouse and keys: Tab changes the tool, W A S D Q E or the mouse move it, Space or the left "
+        "button closes its jaws. Jaws that close on tissue hold it until they open.");
     ImGui::EndChild();
     if (button(fonts, "Start", true))
         input.action = Action::start;
