@@ -83,6 +83,7 @@ class Trainer {
 
     /// Pictures of every screen, for the README and for tests: no person needed.
     void take_pictures() {
+        screens_.screen = view::Screen::menu;
         picture("menu");
         show_card(chosen_);
         picture("card");
