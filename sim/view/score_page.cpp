@@ -67,9 +67,9 @@ void bar_heads(const Fonts& fonts, const ProfileBar& bar) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     for (const auto& [share, word] :
          {std::pair(bar.pass_share, "pass"), std::pair(bar.good_share, "expert")}) {
-        const float x = at.x + width * static_cast<float>(share);
-        draw_text(list, fonts.body, {x - 0.5F * text_size(fonts.body, word).x, at.y}, ink::quiet,
-                  word);
+        const float wide = text_size(fonts.body, word).x;
+        const float x = std::min(width * static_cast<float>(share) - 0.5F * wide, width - wide);
+        draw_text(list, fonts.body, {at.x + x, at.y}, ink::quiet, word);
     }
     ImGui::Dummy({width, ImGui::GetFontSize()});
 }
@@ -97,7 +97,9 @@ void mark_and_word(const ProfileBar& bar) {
               bar.mark);
     ImGui::Dummy({1.4F * em, em});
     ImGui::SameLine();
-    text_in(ink_of(bar.mark), bar.word);
+    ImGui::PushStyleColor(ImGuiCol_Text, ink_of(bar.mark));
+    ImGui::TextWrapped("%s", bar.word.c_str());
+    ImGui::PopStyleColor();
 }
 
 /// Name, bar, value, mark and limit side by side; with large letters the bar goes below the name
@@ -129,7 +131,7 @@ void draw_profile(const ScoreModel& score, const Fonts& fonts) {
     const float em = ImGui::GetFontSize();
     const bool narrow = ImGui::GetContentRegionAvail().x < 52.0F * em;
     const std::vector<float> columns =
-        narrow ? std::vector{13.5F, 12.0F, 8.5F} : std::vector{10.5F, 13.5F, 6.5F, 8.5F, 12.0F};
+        narrow ? std::vector{12.0F, 11.0F, 9.5F} : std::vector{10.5F, 13.5F, 6.5F, 8.5F, 12.0F};
     if (!ImGui::BeginTable("profile", static_cast<int>(columns.size()), kRows))
         return;
     for (const float wide : columns)
