@@ -5,6 +5,11 @@
 #include <cmath>
 
 namespace tasks {
+namespace {
+
+constexpr double kRounding = 1e-9; // of a sum of thousands of pieces: all of it is all of it
+
+} // namespace
 
 std::vector<Metric> path_metrics(const Progress& progress, const Exercise& exercise,
                                  bool forces_on) {
@@ -30,7 +35,8 @@ std::vector<Metric> path_metrics(const Progress& progress, const Exercise& exerc
     add("deviation_max", sums.farthest_m);
     add("path_inside", static_cast<double>(sums.inside_ticks) / ticks);
     add("path_in_band", static_cast<double>(sums.band_ticks) / contacts);
-    add("path_coverage", sums.length_m > 0.0 ? sums.covered_m / sums.length_m : 0.0);
+    const double covered = sums.length_m > 0.0 ? sums.covered_m / sums.length_m : 0.0;
+    add("path_coverage", covered > 1.0 - kRounding ? 1.0 : covered);
     add("path_breaks", sums.breaks);
     return list;
 }
