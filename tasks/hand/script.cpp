@@ -123,6 +123,24 @@ bool ScriptHand::move_jaw(const ScriptStep& step, double to) {
     return share >= 1.0;
 }
 
+// The force tells how deep; the way is across the direction of the press.
+bool ScriptHand::slide(const HandSight& sight, const ScriptStep& step) {
+    const std::size_t t = index_of(step);
+    if (stage_ == Stage::begin) {
+        if (!pressing_[t].active)
+            begin_pressing(sight, step);
+        const auto target = static_cast<std::size_t>(std::max(target_of_step_[now_], 0));
+        const glm::dvec3 way = step.at_m.value_or(sight.now.target[target].position_m) - goal_m_[t];
+        const glm::dvec3& down = pressing_[t].direction;
+        slide_from_m_ = pressing_[t].from_m;
+        slide_to_m_ = slide_from_m_ + way - glm::dot(way, down) * down;
+        stage_ = Stage::press;
+    }
+    const double share = std::min(1.0, elapsed_s_ / *step.seconds);
+    pressing_[t].from_m = glm::mix(slide_from_m_, slide_to_m_, share);
+    return share >= 1.0;
+}
+
 bool ScriptHand::perform(const HandSight& sight, const ScriptStep& step) {
     const std::size_t t = index_of(step);
     const bool begins = stage_ == Stage::begin;
@@ -148,6 +166,8 @@ bool ScriptHand::perform(const HandSight& sight, const ScriptStep& step) {
         if (step.force_n)
             pressing_[t].press.wanted_n = *step.force_n;
         return elapsed_s_ >= *step.seconds;
+    case Verb::slide:
+        return slide(sight, step);
     case Verb::retract:
         if (begins) {
             const glm::dvec3 back =

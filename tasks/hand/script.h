@@ -11,6 +11,7 @@
 //                                                      target's normal, or along the shaft
 //     hold              seconds, force_n               keeps pressing, or still; a force given
 //                                                      here is the one to press with from now on
+//     slide             target or at_mm, seconds       draws straight to there while it presses on
 //     retract           seconds                        15 mm back the way it pressed
 //     wait              seconds                        all tools go on as they are
 //     grasp             seconds                        closes the jaws, in 0.3 s if not said
@@ -26,7 +27,7 @@
 
 namespace tasks {
 
-enum class Verb : std::uint8_t { move, touch, press, hold, retract, wait, grasp, release };
+enum class Verb : std::uint8_t { move, touch, press, hold, retract, wait, grasp, release, slide };
 
 struct ScriptStep {
     Verb verb = Verb::wait;
@@ -70,6 +71,7 @@ class ScriptHand {
     void begin_pressing(const HandSight& sight, const ScriptStep& step);
     void keep_pressing(const HandSight& sight);
     bool touch(const HandSight& sight, const ScriptStep& step);
+    bool slide(const HandSight& sight, const ScriptStep& step);
     bool move_jaw(const ScriptStep& step, double to);
 
     Script script_;
@@ -82,6 +84,7 @@ class ScriptHand {
     std::array<double, kTools> jaw_{}; // 0 open .. 1 closed
     double jaw_from_ = 0.0;
     MinimumJerk move_;
+    glm::dvec3 slide_from_m_{0.0}, slide_to_m_{0.0}; // of where the press began
     struct Pressing {
         bool active = false;
         glm::dvec3 from_m{0.0}, direction{0.0, 0.0, -1.0}; // direction: into the tissue

@@ -19,6 +19,8 @@ void accept_for(Verb verb, const TomlTable& t) {
     switch (verb) {
     case Verb::move:
         return t.accept_only({"tool", "verb", "target", "at_mm", "seconds"});
+    case Verb::slide:
+        return t.accept_only({"tool", "verb", "target", "at_mm", "seconds"});
     case Verb::touch:
     case Verb::press:
         return t.accept_only({"tool", "verb", "target", "force_n", "seconds"});
@@ -36,20 +38,22 @@ void accept_for(Verb verb, const TomlTable& t) {
 ScriptStep parse_step(const TomlTable& t) {
     ScriptStep step;
     step.where = t.where();
-    step.verb = static_cast<Verb>(t.choice(
-        "verb", {"move", "touch", "press", "hold", "retract", "wait", "grasp", "release"}));
+    step.verb = static_cast<Verb>(t.choice("verb", {"move", "touch", "press", "hold", "retract",
+                                                    "wait", "grasp", "release", "slide"}));
     accept_for(step.verb, t);
     if (step.verb != Verb::wait)
         step.tool = static_cast<Role>(t.choice("tool", {"left", "right", "assist"}));
     if (t.has("target") || step.verb == Verb::touch)
         step.target = t.text("target");
-    if (t.has("at_mm") || (step.verb == Verb::move && step.target.empty()))
+    if (t.has("at_mm") ||
+        ((step.verb == Verb::move || step.verb == Verb::slide) && step.target.empty()))
         step.at_m = t.place_mm("at_mm", kPlace_mm);
     if (step.at_m && !step.target.empty())
         t.refuse("at_mm", "either at_mm or target, not both");
     if (t.has("force_n") || step.verb == Verb::press)
         step.force_n = t.number("force_n", kForce_n);
-    if (t.has("seconds") || step.verb == Verb::hold || step.verb == Verb::wait)
+    if (t.has("seconds") || step.verb == Verb::hold || step.verb == Verb::wait ||
+        step.verb == Verb::slide)
         step.seconds = t.number("seconds", kSeconds);
     return step;
 }
