@@ -46,11 +46,30 @@ static_assert(haptics::kTools == tasks::kTools);
 /// Where the targets are, in micrometres, after one FEM step.
 using TargetPlaces = std::array<std::array<std::int32_t, 3>, tasks::kMaxTargets>;
 
-/// One FEM answer: what the haptic loop steps at 1 kHz, and what the exercise sees of the tissue.
+/// How many of tasks::kSightRays from the endoscope reach each target.
+using ClearRays = std::array<std::uint8_t, tasks::kMaxTargets>;
+
+/// What the exercise sees of the tissue after one FEM step.
+struct TissueSeen {
+    TargetPlaces target_um{};
+    ClearRays clear_rays{};
+    std::int32_t stress_pa = 0;
+    int targets = 0;
+};
+
+/// One FEM answer: what the haptic loop steps at 1 kHz, and what the exercise sees.
 struct TissueAnswer {
     haptics::LocalModels local;
-    TargetPlaces target_um{};
-    int targets = 0;
+    TissueSeen seen;
+};
+
+/// The endoscope in one millisecond.
+struct ScopeNow {
+    tasks::View view;
+    glm::dvec3 port_m{0.0}; // where it comes in; the eye itself if the scene's picture is fixed
+    double horizon_rad = 0.0;
+    bool present = false; // false: the scene's picture is fixed
+    bool faulted = false;
 };
 
 /// The tools as they are in one millisecond.
@@ -65,6 +84,7 @@ struct ToolsNow {
     std::array<bool, kTools> grasping{};     // jaws hold tissue
     std::array<double, kTools> felt_share{}; // ramp and limits: 0 limp .. 1 full force
     std::array<bool, kTools> faulted{};
+    ScopeNow scope;
 };
 
 /// The surfaces as they are drawn; vectors sized once at start.
@@ -80,15 +100,21 @@ struct SurfaceNow {
 struct ProgressNow {
     std::int64_t tick = -1;
     int next_target = 0;
+    std::uint32_t found = 0; // bit k: target k of find-tubes
     double hold_share = 0.0;
     bool complete = false;
     int errors = 0;
 };
 
-/// Where the person at mouse and keyboard wants the tips.
+/// Where the person at mouse and keyboard wants the tips and the endoscope, and which of them are
+/// in his hands; the others are the assistant's.
 struct PointerGoals {
     std::array<glm::dvec3, kTools> tip_m{};
     std::array<double, kTools> jaw{};
+    std::array<bool, kTools> held{true, true, true};
+    glm::dvec3 scope_tip_m{0.0};
+    double camera_rad = 0.0, optic_rad = 0.0;
+    bool scope_held = false;
 };
 
 struct Exchange {

@@ -41,6 +41,13 @@ void MouseDevice::set_goal(const glm::dvec3& goal_m) noexcept {
         sample_.counts[axis] = to_counts(goal_m[axis] / info_.metres_per_count);
 }
 
+void MouseDevice::set_turns(double camera_counts, double optic_counts) noexcept {
+    if (!std::isfinite(camera_counts + optic_counts))
+        return;
+    sample_.roll_counts = to_counts(camera_counts);
+    sample_.optic_counts = to_counts(optic_counts);
+}
+
 void MouseDevice::set_jaw(double closed) noexcept {
     sample_.jaw_counts =
         std::isfinite(closed) ? to_counts(1000.0 * std::clamp(closed, 0.0, 1.0)) : 0;

@@ -19,6 +19,8 @@ class MouseDevice final : public Device {
     /// Where the handle is now, device frame. What is not finite is ignored.
     void set_goal(const glm::dvec3& goal_m) noexcept;
     void set_jaw(double closed) noexcept; // 0 open .. 1 closed
+    /// Of an endoscope: camera head about the shaft, optic against the camera head, in counts.
+    void set_turns(double camera_counts, double optic_counts) noexcept;
 
   private:
     DeviceInfo info_;

@@ -134,7 +134,7 @@ class Trainer {
             options.trainee = trainee_ids_[screens_.menu.trainee];
         const std::unique_ptr<Session> session = make_session(options, demo);
         if (!demo)
-            session->crew = make_mouse_crew(session->haptics);
+            session->crew = make_mouse_crew(session->scene.scene, session->haptics);
         session->exchange->surface_wanted = true;
         session->keep_recording = true;
         Stage stage(*session, !demo, next_surface_id_);

@@ -52,8 +52,7 @@ std::int64_t take_answer(HapticRig& rig, Exchange& exchange) noexcept {
     if (!answer)
         return -1;
     haptics::adopt(rig.coupling_state, answer->local);
-    rig.target_um = answer->target_um;
-    rig.targets = answer->targets;
+    rig.seen = answer->seen;
     return answer->local.step;
 }
 
@@ -113,6 +112,8 @@ void haptic_tick(HapticRig& rig, Exchange& exchange, tasks::TickTrace& trace) no
     ToolsNow& now = exchange.tools.back();
     now.tick = tick;
     const auto fault = read_tools(rig, now);
+    trace.scope = read_scope(rig.scope);
+    now.scope = look_through(rig.scope, trace.scope);
     rig.history.push(tick, now.tip);
 
     trace.tick = tick;

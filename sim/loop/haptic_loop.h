@@ -6,6 +6,7 @@
 #include "haptics/contact/coupling.h"
 #include "haptics/device/device.h"
 #include "haptics/safety/limits.h"
+#include "sim/bridge/scope.h"
 #include "sim/exchange.h"
 
 #include <string>
@@ -40,8 +41,8 @@ struct HapticRig {
     haptics::PoseHistory history;
     bool forces_on = true; // false: positions only, a supported mode
     std::int64_t next_tick = 0;
-    TargetPlaces target_um{}; // of the newest answer taken
-    int targets = 0;
+    TissueSeen seen; // of the newest answer taken
+    ScopeInstrument scope;
     // for the rig report
     std::uint64_t slid_off_patch = 0;
     std::uint64_t not_finite = 0;

@@ -182,10 +182,10 @@ StepOutcome tissue_step(TissueRig& rig, const ToolsNow& tools, TissueAnswer& ans
     answer.local.sample_tick = tools.tick;
     if (rig.config.basis)
         make_local_models(rig, answer.local);
-    answer.targets = static_cast<int>(rig.targets.size());
-    place_targets(rig, answer.target_um);
-    outcome.trace.targets = answer.targets;
-    outcome.trace.target_um = answer.target_um;
+    answer.seen.targets = static_cast<int>(rig.targets.size());
+    place_targets(rig, answer.seen.target_um);
+    outcome.trace.targets = answer.seen.targets;
+    outcome.trace.target_um = answer.seen.target_um;
     outcome.trace.flags =
         static_cast<std::uint8_t>((outcome.warped ? 1 : 0) | (outcome.inverted > 0 ? 2 : 0));
     return outcome;

@@ -1,5 +1,6 @@
 #include "sim/session/attempt.h"
 
+#include "tasks/score/find_metrics.h"
 #include "tasks/score/path_metrics.h"
 
 #include <algorithm>
@@ -45,8 +46,8 @@ Attempt::Attempt(const Scene& scene, const tasks::Exercise& exercise,
                  std::vector<tasks::Target> rest_targets, tasks::AttemptRow row,
                  tasks::Logbook* logbook)
     : exercise_(exercise), rest_targets_(std::move(rest_targets)), geometry_(make_haptics(scene)),
-      view_(scene.view), row_(std::move(row)), logbook_(logbook),
-      context_(context_of(scene, exercise, row_)), step_histogram_(kStepBins) {
+      row_(std::move(row)), logbook_(logbook), context_(context_of(scene, exercise, row_)),
+      step_histogram_(kStepBins) {
     hash_.add_setup(row_);
 }
 
@@ -58,7 +59,8 @@ void Attempt::add(const tasks::TickTrace& tick) {
     // the schedule: steps up to the adopted one become part of the attempt now, in order
     while (tick.adopted_step >= 0 && !waiting_.empty() &&
            waiting_.front().step <= tick.adopted_step) {
-        target_um_ = waiting_.front().target_um;
+        const tasks::StepTrace& step = waiting_.front();
+        tissue_ = {step.target_um, step.clear_rays, step.stress_pa, step.targets};
         if (!placed_)
             take_ideal_path(waiting_.front());
         hash_.add(waiting_.front());
@@ -67,7 +69,7 @@ void Attempt::add(const tasks::TickTrace& tick) {
     }
     hash_.add(tick);
     ticks_.push_back(tick);
-    seen_ = observe_trace(geometry_, view_, tick, target_um_, rest_targets_);
+    seen_ = observe_trace(geometry_, tick, tissue_, rest_targets_);
     tasks::observe(progress_, exercise_, seen_);
     tasks::observe(score_, seen_);
     for (int i = 0; i < kTools; ++i) {
@@ -124,6 +126,8 @@ Attempt::Outcome Attempt::finish(const tasks::RigReport& rig) {
     out.metrics = tasks::finish(score_, progress_, context_);
     const auto of_path = tasks::path_metrics(progress_, exercise_, row_.forces_on);
     out.metrics.insert(out.metrics.end(), of_path.begin(), of_path.end());
+    const auto of_tubes = tasks::find_metrics(progress_, exercise_, row_.forces_on);
+    out.metrics.insert(out.metrics.end(), of_tubes.begin(), of_tubes.end());
     for (const tasks::Event& event : progress_.events)
         hash_.add(event);
     for (const tasks::Metric& metric : out.metrics)

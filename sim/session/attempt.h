@@ -52,7 +52,6 @@ class Attempt {
     tasks::Exercise exercise_;
     std::vector<tasks::Target> rest_targets_;
     HapticRig geometry_;
-    tasks::View view_;
     tasks::AttemptRow row_;
     tasks::Logbook* logbook_;
     tasks::Progress progress_;
@@ -60,7 +59,7 @@ class Attempt {
     tasks::ScoreContext context_;
     tasks::LogHash hash_;
     tasks::Observation seen_;
-    TargetPlaces target_um_{};
+    TissueSeen tissue_;
     bool placed_ = false, keep_ = false;
     std::vector<std::vector<std::byte>> kept_;
     std::deque<tasks::StepTrace> waiting_; // steps that no tick has adopted yet

@@ -28,7 +28,7 @@ Attempt::Outcome run_lockstep(Session& session, tasks::Logbook* logbook, std::in
 
     ToolsNow sampled; // poses that the running FEM step reads
     tasks::TickTrace trace;
-    tasks::HandSight sight = sight_of(session, trace, 0, false);
+    tasks::HandSight sight = sight_of(session, trace, 0, 0, false);
     std::int64_t tick = 0;
     for (; tick < session.max_ticks && !attempt.progress().complete; ++tick) {
         if (tick > 0 && tick % period == 0) {
@@ -42,7 +42,9 @@ Attempt::Outcome run_lockstep(Session& session, tasks::Logbook* logbook, std::in
         attempt.add(trace);
         if (tick % period == 0)
             sampled = exchange.tools.latest();
-        sight = sight_of(session, trace, attempt.progress().next, attempt.progress().complete);
+        const tasks::Progress& progress = attempt.progress();
+        sight = sight_of(session, trace, progress.next, tasks::found_tubes(progress),
+                         progress.complete);
         if (tick % 1000 == 0 && should_stop && should_stop()) {
             attempt.add_event({.tick = tick, .kind = tasks::EventKind::abandoned});
             break;

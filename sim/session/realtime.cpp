@@ -36,7 +36,7 @@ void haptic_thread(Session& session, Counts& counts) {
     Pacer pacer(kTick_s);
     tasks::TickTrace trace;
     ProgressNow progress;
-    tasks::HandSight sight = sight_of(session, trace, 0, false);
+    tasks::HandSight sight = sight_of(session, trace, 0, 0, false);
     while (!exchange.stop.load(std::memory_order_relaxed)) {
         pacer.wait();
         if (exchange.paused.load(std::memory_order_relaxed)) {
@@ -46,14 +46,14 @@ void haptic_thread(Session& session, Counts& counts) {
         if (const ProgressNow* news = exchange.progress.fetch())
             progress = *news;
         if (const PointerGoals* goals = exchange.pointer.fetch())
-            move_mouse_crew(session.crew, session.haptics, *goals);
+            session.crew.pointer = *goals;
         crew_tick(session.crew, session.haptics, sight);
         const auto start = Clock::now();
         haptic_tick(session.haptics, exchange, trace);
         session.tick_time.add(microseconds(Clock::now() - start));
         if (!exchange.ticks.push(trace))
             exchange.dropped.fetch_add(1, std::memory_order_relaxed);
-        sight = sight_of(session, trace, progress.next_target, progress.complete);
+        sight = sight_of(session, trace, progress.next_target, progress.found, progress.complete);
         ++counts.ticks;
     }
     limp(session);

@@ -67,15 +67,20 @@ HapticRig make_haptics(const Scene& scene) {
         instrument.tip_radius_m = tool.tip_radius_m;
         instrument.jaws = tool.jaws;
     }
+    rig.scope = make_scope(scene.scope, scene.view);
     return rig;
 }
 
-tasks::Observation observe_trace(const HapticRig& geometry, const tasks::View& view,
-                                 const tasks::TickTrace& tick, const TargetPlaces& target_um,
+tasks::Observation observe_trace(const HapticRig& geometry, const tasks::TickTrace& tick,
+                                 const TissueSeen& tissue,
                                  std::span<const tasks::Target> rest_targets) {
     tasks::Observation seen;
     seen.tick = tick.tick;
-    seen.view = view;
+    const ScopeNow scope = look_through(geometry.scope, tick.scope);
+    seen.view = scope.view;
+    seen.scope_present = scope.present;
+    seen.horizon_rad = scope.horizon_rad;
+    seen.stress_pa = tissue.stress_pa;
     for (int i = 0; i < kTools; ++i) {
         const tasks::ToolTrace& from = tick.tool[i];
         const Instrument& instrument = geometry.instrument[i];
@@ -87,6 +92,7 @@ tasks::Observation observe_trace(const HapticRig& geometry, const tasks::View& v
         to.roll_rad = from.roll_counts * instrument.roll_rad_per_count;
         to.jaw = from.jaw_counts * 1e-3;
         to.touching = (from.flags & 1) != 0;
+        to.grasping = (from.flags & 16) != 0;
         to.present = (from.flags & 2) != 0;
         for (int axis = 0; axis < 3; ++axis) {
             to.force_n[axis] = from.force_mn[axis] * 1e-3;
@@ -96,8 +102,9 @@ tasks::Observation observe_trace(const HapticRig& geometry, const tasks::View& v
     seen.targets = static_cast<int>(rest_targets.size());
     for (int t = 0; t < seen.targets; ++t) {
         seen.target[t].normal = rest_targets[t].normal;
+        seen.target[t].clear_rays = tissue.clear_rays[t];
         for (int axis = 0; axis < 3; ++axis) {
-            seen.target[t].position_m[axis] = target_um[t][axis] * 1e-6;
+            seen.target[t].position_m[axis] = tissue.target_um[t][axis] * 1e-6;
         }
     }
     return seen;

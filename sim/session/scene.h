@@ -36,7 +36,9 @@ struct Scene {
     std::string id, title, text; // text: the file as it was read
     std::vector<SceneOrgan> organ;
     std::array<SceneTool, kTools> tool; // left, right, assist
-    tasks::View view;
+    tasks::View view;                   // with a scope: as it is held at first
+    std::optional<SceneScope> scope;    // none: the picture is fixed
+    glm::dvec3 look_at_m{0.0};
 };
 
 /// What is wrong with a file: all of it, for `trocar scene check`. Where one is passed, mistakes
@@ -89,8 +91,8 @@ TissueRig make_tissue(const LoadedScene& scene, std::span<const TargetWish> targ
 HapticRig make_haptics(const Scene& scene);
 
 /// What the exercise sees in one tick, from recorded integers alone.
-tasks::Observation observe_trace(const HapticRig& geometry, const tasks::View& view,
-                                 const tasks::TickTrace& tick, const TargetPlaces& target_um,
+tasks::Observation observe_trace(const HapticRig& geometry, const tasks::TickTrace& tick,
+                                 const TissueSeen& tissue,
                                  std::span<const tasks::Target> rest_targets);
 
 } // namespace sim

@@ -120,6 +120,32 @@ tasks::View parse_view(const TomlTable& t) {
     return view;
 }
 
+// The endoscope, held so that it looks at the view's place from the view's distance; an oblique
+// optic cannot do so from just anywhere, so the eye is where that is possible nearest to eye_mm.
+void parse_scope(const TomlTable& t, const TomlTable& view, Scene& scene) {
+    t.accept_only({"fulcrum_mm", "shaft_mm", "optic_deg"});
+    haptics::Endoscope optics;
+    optics.trocar.fulcrum_m = t.place_mm("fulcrum_mm", kPlace_mm);
+    optics.trocar.shaft_m = 1e-3 * t.number("shaft_mm", {100.0, 600.0}, 330.0);
+    optics.optic_rad = glm::radians(t.number("optic_deg", {0.0, 75.0}, 30.0));
+    optics.up = glm::normalize(1e3 * view.place_mm("up", {-1.0, 1.0}));
+    const double wanted_m = glm::distance(scene.view.eye_m, scene.look_at_m);
+    const haptics::EndoscopeAim start =
+        haptics::aim_at(optics, scene.look_at_m, wanted_m, scene.view.eye_m, 0.0);
+    const double got_m = glm::distance(start.tip_m, scene.look_at_m);
+    constexpr double kRounding_m = 1e-6;
+    if (std::abs(got_m - wanted_m) > kRounding_m) {
+        t.refuse("fulcrum_mm",
+                 fmt::format("a place from where the scope reaches {:.0f} mm before look_at_mm, "
+                             "which is how far eye_mm is from it; from here it comes to {:.0f} mm",
+                             1e3 * wanted_m, 1e3 * got_m));
+    }
+    scene.scope = SceneScope{optics, start};
+    tasks::ScopeTrace at_start;
+    at_start.flags = 2;
+    scene.view = look_through(make_scope(scene.scope, scene.view), at_start).view;
+}
+
 // Names are how anchors and targets speak of organs.
 void check_names(const std::vector<TomlTable>& tables, const TomlTable& t, const Scene& scene) {
     const std::string& name = scene.organ.back().name;
@@ -169,7 +195,9 @@ Scene parse_scene(std::string_view text, std::string_view file, Mistakes* mistak
     scene.text = text;
     section(mistakes, [&] {
         const TomlTable root = TomlTable::parse(text, file);
-        section(mistakes, [&] { root.accept_only({"id", "title", "organ", "tool", "view"}); });
+        section(mistakes, [&] {
+            root.accept_only({"id", "title", "organ", "tool", "view", "scope"});
+        });
         section(mistakes, [&] { scene.id = root.text("id"); });
         section(mistakes, [&] { scene.title = root.text("title"); });
         const std::vector<TomlTable> organs = root.tables("organ");
@@ -186,7 +214,13 @@ Scene parse_scene(std::string_view text, std::string_view file, Mistakes* mistak
                 root.refuse("organ", "at least one table written as [[organ]]");
         });
         section(mistakes, [&] { parse_tools(root, scene, mistakes); });
-        section(mistakes, [&] { scene.view = parse_view(root.table("view")); });
+        section(mistakes, [&] {
+            const TomlTable view = root.table("view");
+            scene.view = parse_view(view);
+            scene.look_at_m = view.place_mm("look_at_mm", kPlace_mm);
+            if (root.has("scope"))
+                parse_scope(root.table("scope"), view, scene);
+        });
     });
     return scene;
 }

@@ -30,6 +30,8 @@ std::vector<TargetWish> wishes(const tasks::Exercise& exercise) {
     std::vector<TargetWish> out;
     for (const tasks::ExerciseTarget& target : exercise.target)
         out.push_back({target.at_m, target.organ});
+    if (exercise.lift)
+        out.push_back({exercise.lift->at_m, exercise.lift->organ});
     return out;
 }
 
@@ -80,26 +82,56 @@ std::unique_ptr<Session> build(const RunOptions& options, LoadedScene scene,
     const double limit =
         options.max_seconds > 0.0 ? options.max_seconds : session->exercise.time_limit_s;
     session->max_ticks = static_cast<std::int64_t>(limit / kTick_s);
-    place_targets(session->tissue, session->haptics.target_um);
-    session->rest_target_um = session->haptics.target_um;
-    session->haptics.targets = static_cast<int>(session->tissue.targets.size());
+    place_targets(session->tissue, session->haptics.seen.target_um);
+    session->rest_target_um = session->haptics.seen.target_um;
+    session->haptics.seen.targets = static_cast<int>(session->tissue.targets.size());
     return session;
 }
 
-void give_hands(Session& session) {
+std::array<glm::dvec3, kTools> start_tips(const Scene& scene) {
     std::array<glm::dvec3, kTools> start;
     for (int i = 0; i < kTools; ++i)
-        start[i] = session.scene.scene.tool[i].start_tip_m;
+        start[i] = scene.tool[i].start_tip_m;
+    return start;
+}
+
+void give_skilled_hand(Session& session, const tasks::HandSkill& skill) {
+    const auto start = start_tips(session.scene.scene);
+    auto& hand = session.crew.hand;
+    if (session.exercise.kind == tasks::ExerciseKind::find_tubes)
+        hand.emplace<tasks::FindHand>(skill, session.exercise, session.options.seed, start);
+    else
+        hand.emplace<tasks::Hand>(skill, session.exercise, session.options.seed, start);
+}
+
+// The endoscope in somebody's hands, if the exercise wants that.
+void give_camera(Session& session, const tasks::HandSkill& skill) {
+    if (session.exercise.scope != tasks::ScopeHold::assistant || !session.haptics.scope.fitted)
+        return;
+    give_scope(session.crew, session.haptics);
+    const Scene& scene = session.scene.scene;
+    session.crew.camera.emplace(skill, session.exercise, session.options.seed,
+                                start_goal(scene.view, scene.look_at_m));
+}
+
+void give_hands(Session& session) {
+    const auto start = start_tips(session.scene.scene);
     const std::string& hands = session.options.hands;
     if (hands.ends_with(".toml")) {
-        session.crew.hand.emplace<tasks::ScriptHand>(tasks::parse_script(read_text(hands), hands),
-                                                     session.exercise, start);
+        tasks::Script script = tasks::parse_script(read_text(hands), hands);
+        const bool looks = tasks::holds_scope(script);
+        session.crew.hand.emplace<tasks::ScriptHand>(std::move(script), session.exercise, start);
+        if (looks)
+            give_scope(session.crew, session.haptics);
+        else
+            give_camera(session, tasks::without_errors(tasks::skill_named("expert")));
         return;
     }
     tasks::HandSkill skill = tasks::skill_named(hands);
     if (!session.options.noise)
         skill = tasks::without_errors(skill);
-    session.crew.hand.emplace<tasks::Hand>(skill, session.exercise, session.options.seed, start);
+    give_skilled_hand(session, skill);
+    give_camera(session, skill);
 }
 
 } // namespace
@@ -169,11 +201,12 @@ tasks::AttemptRow attempt_row(const Session& session, bool realtime) {
 }
 
 tasks::HandSight sight_of(const Session& session, const tasks::TickTrace& trace, int next_target,
-                          bool done) {
+                          std::uint32_t found, bool done) {
     return {.tick = trace.tick,
-            .now = observe_trace(session.haptics, session.scene.scene.view, trace,
-                                 session.haptics.target_um, session.rest_targets),
+            .now =
+                observe_trace(session.haptics, trace, session.haptics.seen, session.rest_targets),
             .next_target = next_target,
+            .found = found,
             .done = done};
 }
 
@@ -182,6 +215,7 @@ ProgressNow progress_now(const Attempt& attempt, const tasks::Exercise& exercise
     ProgressNow now;
     now.tick = attempt.seen().tick;
     now.next_target = p.next;
+    now.found = tasks::found_tubes(p);
     now.hold_share = tasks::share_at_next(p, exercise);
     now.complete = p.complete;
     for (const tasks::Event& event : p.events)

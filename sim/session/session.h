@@ -65,7 +65,7 @@ tasks::AttemptRow attempt_row(const Session& session, bool realtime);
 
 /// What the person at the tools sees after a tick.
 tasks::HandSight sight_of(const Session& session, const tasks::TickTrace& trace, int next_target,
-                          bool done);
+                          std::uint32_t found, bool done);
 
 /// How far the fold is, for hands and screen.
 ProgressNow progress_now(const Attempt& attempt, const tasks::Exercise& exercise);

@@ -86,7 +86,10 @@ void forget_counts(Progress& progress) {
     for (Progress::Episode& episode : progress.episode) {
         episode.off_ticks = episode.wrong_ticks = episode.hidden_ticks = episode.free_ticks = 0;
         episode.left_ticks = episode.skipped_ticks = 0;
+        episode.blind_ticks = episode.misused_ticks = 0;
     }
+    for (TubeSearch& tube : progress.tube)
+        tube.good_ticks = tube.seen_ticks = 0;
 }
 
 } // namespace

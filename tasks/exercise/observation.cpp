@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 namespace tasks {
 
@@ -19,6 +20,20 @@ bool in_view(const View& view, const glm::dvec3& point_m) noexcept {
     const double half_height = depth * std::tan(0.5 * view.field_of_view_rad);
     return std::abs(glm::dot(to, view.up)) <= half_height &&
            std::abs(glm::dot(to, right)) <= half_height * view.aspect;
+}
+
+double off_centre(const View& view, const glm::dvec3& point_m) noexcept {
+    const glm::dvec3 to = point_m - view.eye_m;
+    const double depth = glm::dot(to, view.forward);
+    if (depth <= 0.0)
+        return std::numeric_limits<double>::infinity();
+    return 0.5 * glm::length(to - depth * view.forward) /
+           (depth * std::tan(0.5 * view.field_of_view_rad));
+}
+
+double size_in_view(const View& view, const glm::dvec3& point_m, double radius_m) noexcept {
+    const double depth = glm::dot(point_m - view.eye_m, view.forward);
+    return depth > 0.0 ? radius_m / (depth * std::tan(0.5 * view.field_of_view_rad)) : 0.0;
 }
 
 } // namespace tasks

@@ -25,7 +25,8 @@ struct ToolObservation {
     glm::dvec3 force_n{0.0};   // on the tip, by tissue or scenery
     glm::dvec3 contact_m{0.0}; // where the tip touches, world; only if touching
     bool touching = false;
-    bool present = true; // a device or hand holds this tool
+    bool grasping = false; // its jaws hold tissue
+    bool present = true;   // a device or hand holds this tool
 };
 
 /// The endoscope picture: a pinhole with a vertical field of view.
@@ -36,17 +37,30 @@ struct View {
 };
 bool in_view(const View& view, const glm::dvec3& point_m) noexcept;
 
+/// Distance of a point from the middle of the picture, as a share of the picture's height; infinite
+/// behind the eye.
+double off_centre(const View& view, const glm::dvec3& point_m) noexcept;
+/// Width of a ball there, as a share of the picture's height; 0 behind the eye.
+double size_in_view(const View& view, const glm::dvec3& point_m, double radius_m) noexcept;
+
+/// Rays from the endoscope to a target's mark that are tried for whether something hides it.
+inline constexpr int kSightRays = 7;
+
 struct Target {
     glm::dvec3 position_m{0.0};       // on the deformed surface
     glm::dvec3 normal{0.0, 0.0, 1.0}; // of the rest surface there
+    int clear_rays = 0;               // of kSightRays: nothing between it and the endoscope
 };
 
 struct Observation {
     std::int64_t tick = 0; // 1 ms each, 0 = start of the attempt
     std::array<ToolObservation, kTools> tool;
     std::array<Target, kMaxTargets> target;
-    int targets = 0;
+    int targets = 0; // find-tubes: the place to lift is one more, after the tubes
     View view;
+    bool scope_present = false; // false: the picture is fixed
+    double horizon_rad = 0.0;   // turn of the picture against a level one
+    double stress_pa = 0.0;     // largest von Mises stress in the tissue
 };
 
 inline constexpr double kTick_s = 1e-3;

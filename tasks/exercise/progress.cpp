@@ -1,10 +1,12 @@
 #include "tasks/exercise/progress.h"
 
 #include "tasks/exercise/episodes.h"
+#include "tasks/exercise/find_tubes.h"
 #include "tasks/exercise/follow_path.h"
 #include "tasks/exercise/touch_points.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -20,10 +22,11 @@ double reach_m(const ToolObservation& tool, const glm::dvec3& place_m) noexcept 
 }
 
 std::string_view event_name(EventKind kind) noexcept {
-    constexpr std::array<std::string_view, 15> names{
-        "target_touched", "wrong_role",  "over_force", "off_target", "out_of_view",
-        "contact_begin",  "contact_end", "paused",     "resumed",    "abandoned",
-        "completed",      "rig_fault",   "path_begun", "path_left",  "order_broken"};
+    constexpr std::array<std::string_view, 18> names{
+        "target_touched", "wrong_role",       "over_force",   "off_target", "out_of_view",
+        "contact_begin",  "contact_end",      "paused",       "resumed",    "abandoned",
+        "completed",      "rig_fault",        "path_begun",   "path_left",  "order_broken",
+        "tube_found",     "tube_not_pointed", "tube_not_seen"};
     static_assert(names.size() == static_cast<std::size_t>(kLastEventKind) + 1);
     return names[static_cast<std::size_t>(kind)];
 }
@@ -36,6 +39,8 @@ bool is_error(EventKind kind) noexcept {
     case EventKind::out_of_view:
     case EventKind::path_left:
     case EventKind::order_broken:
+    case EventKind::tube_not_pointed:
+    case EventKind::tube_not_seen:
         return true;
     default:
         return false;
@@ -52,6 +57,9 @@ void observe(Progress& progress, const Exercise& exercise, const Observation& se
     case ExerciseKind::follow_path:
         observe_path(progress, exercise, seen);
         return;
+    case ExerciseKind::find_tubes:
+        observe_tubes(progress, exercise, seen);
+        return;
     }
 }
 
@@ -59,12 +67,24 @@ double share_done(const Progress& progress, const Exercise& exercise) noexcept {
     const auto targets = static_cast<double>(exercise.target.size());
     if (exercise.kind == ExerciseKind::follow_path)
         return progress.path.length_m > 0.0 ? progress.path.done_m / progress.path.length_m : 0.0;
+    if (exercise.kind == ExerciseKind::find_tubes)
+        return targets > 0.0 ? std::popcount(found_tubes(progress)) / targets : 0.0;
     return targets > 0.0 ? progress.next / targets : 0.0;
+}
+
+std::uint32_t found_tubes(const Progress& progress) noexcept {
+    std::uint32_t found = 0;
+    for (std::size_t k = 0; k < progress.tube.size(); ++k)
+        found |= progress.tube[k].found ? 1U << k : 0U;
+    return found;
 }
 
 double share_at_next(const Progress& progress, const Exercise& exercise) noexcept {
     if (exercise.kind == ExerciseKind::follow_path)
         return progress.path.begin_tick < 0 ? 0.0 : progress.path_u - std::floor(progress.path_u);
+    if (exercise.kind == ExerciseKind::find_tubes)
+        return progress.tube[std::min<std::size_t>(progress.next, kMaxTargets - 1)].good_ticks *
+               kTick_s / exercise.hold_s;
     return progress.held_ticks * kTick_s / exercise.hold_s;
 }
 

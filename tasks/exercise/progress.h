@@ -23,8 +23,11 @@ enum class EventKind : std::uint8_t { // numbers are part of the logbook: append
     path_begun,
     path_left,
     order_broken,
+    tube_found,
+    tube_not_pointed, // in the picture as it should be, for long, and not pointed at
+    tube_not_seen,    // pointed at, and not in the picture as it should be
 };
-inline constexpr EventKind kLastEventKind = EventKind::order_broken;
+inline constexpr EventKind kLastEventKind = EventKind::tube_not_seen;
 std::string_view event_name(EventKind kind) noexcept;
 bool is_error(EventKind kind) noexcept;
 
@@ -35,7 +38,7 @@ struct Event {
     std::int8_t target = -1;
     glm::dvec3 place_m{0.0};
     double value = 0.0; // newtons (contact_end: peak of the contact), seconds for out of view,
-                        // metres for path_left and order_broken
+                        // metres for path_left and order_broken, seconds for tube_*
 };
 
 /// How well a path was followed, from its begin to its end; sums, so that the fold can stop
@@ -48,6 +51,13 @@ struct PathSums {
     std::int64_t ticks = 0, contact_ticks = 0, band_ticks = 0, inside_ticks = 0;
     double distance_m = 0.0, distance2_m2 = 0.0, farthest_m = 0.0; // over contact ticks
     int breaks = 0;
+};
+
+/// One tube of find-tubes.
+struct TubeSearch {
+    bool found = false;
+    int good_ticks = 0, seen_ticks = 0; // seen and pointed at; seen only
+    bool not_pointed = false;           // said, since it came into the picture
 };
 
 /// Running state of one attempt. observe() is the only thing that changes it.
@@ -68,6 +78,8 @@ struct Progress {
         bool was_seen = false;
         int free_ticks = 0; // since the last touch, while `touching` is still true
         int off_ticks = 0, wrong_ticks = 0, hidden_ticks = 0, left_ticks = 0, skipped_ticks = 0;
+        int blind_ticks = 0, misused_ticks = 0; // at a tube: that is not seen; with another's tool
+        bool blind = false, misused = false;
         double contact_peak_n = 0.0;
         glm::dvec3 hidden_from_m{0.0};
     };
@@ -79,10 +91,17 @@ struct Progress {
     bool following = false;
     int lost_ticks = 0;
     std::array<double, kMaxTargets> way_m{}; // along the curve to each point, as first seen
+    // find-tubes; `next`: the first tube not found
+    std::array<TubeSearch, kMaxTargets> tube{};
+    int lifted_ticks = 0;                           // the lifting tool holds tissue
+    double lifted_peak_n = 0.0, lifted_sum_n = 0.0; // with what force
 };
 
 /// Share of the exercise that is done, 0..1.
 double share_done(const Progress& progress, const Exercise& exercise) noexcept;
+
+/// Bit k: tube k is found.
+std::uint32_t found_tubes(const Progress& progress) noexcept;
 
 /// Share of what the next target needs, 0..1: of its holding time, of the way to the next point.
 double share_at_next(const Progress& progress, const Exercise& exercise) noexcept;

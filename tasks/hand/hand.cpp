@@ -11,22 +11,21 @@ constexpr double kHover_m = 10e-3;   // tip centre above the target before going
 constexpr double kRest_m = 18e-3;    // tip centre above the tissue when a tool is left alone
 constexpr double kMoreRoom_m = 4e-3; // added to the hover after each bump
 constexpr double kMostRoom_m = 30e-3;
-constexpr double kArc = 0.15; // height of a route over its straight line: swing over tissue
-constexpr double kUsualMove_m = 9.5e-3; // median movement; end points of shorter ones spread less
-constexpr double kFeelShare = 0.6;      // touch is quicker than sight
-constexpr double kBump_n = 0.06;        // felt on the way: something is there
-constexpr double kBackOff_m = 4e-3;     // from what a lift has met
-constexpr double kLeash_m = 12e-3;      // goal ahead of the tip: blocked, do not pull harder
-constexpr double kDepthSeen = 0.5;      // share of the depth error that a second look still leaves
-constexpr double kApproachShare = 0.3;  // of the speed, going down
-constexpr double kNotFound_m = 14e-3;   // past the place where the tissue should have been
-constexpr double kGiveUp_s = 3.0;       // no push, and no blocked movement, goes on longer
-constexpr double kNotice_s = 0.4;       // pressing well and nothing happens: something is wrong
-constexpr double kWanted = 0.3;         // where in the force band people press: gently
-constexpr double kPursuit_s = 0.3;      // smooth pursuit of a target that moves
-constexpr double kTraceShare = 0.3;     // of the speed, drawing along a line
-constexpr double kCalm = 4.0;           // of its scatter: so wide a path takes no care
-constexpr double kPursuitDelays = 2.5;  // of the eye: quicker corrections would swing
+constexpr double kArc = 0.15;       // height of a route over its straight line: swing over tissue
+constexpr double kFeelShare = 0.6;  // touch is quicker than sight
+constexpr double kBump_n = 0.06;    // felt on the way: something is there
+constexpr double kBackOff_m = 4e-3; // from what a lift has met
+constexpr double kLeash_m = 12e-3;  // goal ahead of the tip: blocked, do not pull harder
+constexpr double kDepthSeen = 0.5;  // share of the depth error that a second look still leaves
+constexpr double kApproachShare = 0.3; // of the speed, going down
+constexpr double kNotFound_m = 14e-3;  // past the place where the tissue should have been
+constexpr double kGiveUp_s = 3.0;      // no push, and no blocked movement, goes on longer
+constexpr double kNotice_s = 0.4;      // pressing well and nothing happens: something is wrong
+constexpr double kWanted = 0.3;        // where in the force band people press: gently
+constexpr double kPursuit_s = 0.3;     // smooth pursuit of a target that moves
+constexpr double kTraceShare = 0.3;    // of the speed, drawing along a line
+constexpr double kCalm = 4.0;          // of its scatter: so wide a path takes no care
+constexpr double kPursuitDelays = 2.5; // of the eye: quicker corrections would swing
 constexpr int kMaxCorrections = 4;
 
 /// Where what is touched pushes the tip; zero in the air.
@@ -44,15 +43,10 @@ int ticks(double seconds) {
 Hand::Hand(const HandSkill& skill, const Exercise& exercise, std::uint64_t seed,
            const std::array<glm::dvec3, kTools>& start_tip_m)
     : skill_(skill), exercise_(exercise), random_(seed), goal_m_(start_tip_m),
-      past_(static_cast<std::size_t>(ticks(skill.reaction_s)) + 1), clearance_m_(kHover_m) {
+      seen_(skill.reaction_s), clearance_m_(kHover_m) {
     for (std::size_t t = 0; t < kTools; ++t)
         tremor_[t].random = Random(seed ^ (0x9e3779b97f4a7c15u * (t + 1)));
     pause(skill_.reaction_s + skill_.plan_s);
-}
-
-const Hand::Percept& Hand::perceived(double delay_s) const {
-    const auto delay = std::min(static_cast<std::size_t>(ticks(delay_s)), past_.size() - 1);
-    return past_[(at_ + past_.size() - delay) % past_.size()];
 }
 
 glm::dvec3 Hand::line_of_sight(const HandSight& sight) const {
@@ -67,7 +61,7 @@ void Hand::pause(double seconds) {
 
 // Which target, which tool, which place; then the way there.
 void Hand::decide(const HandSight& sight) {
-    const Percept& seen = perceived(skill_.reaction_s);
+    const Percept& seen = seen_.before(skill_.reaction_s);
     if (seen.done || seen.next_target >= static_cast<int>(exercise_.target.size())) {
         phase_ = Phase::finished;
         return;
@@ -140,15 +134,9 @@ void Hand::next_stride(const HandSight& sight) {
     move_to(sight, to, bow);
 }
 
-// One movement with the spread of its end point: smaller for short ones (Harris & Wolpert 1998).
 void Hand::move_to(const HandSight& sight, const glm::dvec3& to_m, const glm::dvec3& bow_m) {
-    const glm::dvec3 sight_line = line_of_sight(sight);
-    const glm::dvec3& from = goal_m_[static_cast<std::size_t>(tool_)];
-    const double spread = std::min(1.0, glm::distance(from, to_m) / kUsualMove_m);
-    const glm::dvec3 any{random_.normal(), random_.normal(), random_.normal()};
-    const glm::dvec3 across = any - glm::dot(any, sight_line) * sight_line;
-    const glm::dvec3 error = skill_.aim_m * across + skill_.depth_m * random_.normal() * sight_line;
-    move_ = plan_move(from, to_m + spread * error, skill_.speed_mps);
+    move_ = aimed_move(skill_, random_, goal_m_[static_cast<std::size_t>(tool_)], to_m,
+                       line_of_sight(sight));
     move_.bow_m = bow_m;
     phase_ = Phase::travel;
     phase_ticks_ = 0;
@@ -165,7 +153,7 @@ void Hand::follow_move(const HandSight& sight) {
         move_ = on;
     goal_m_[t] = place_m(move_);
     const bool lifting = phase_ == Phase::lift;
-    const bool felt = perceived(kFeelShare * skill_.reaction_s).force_n[t] > kBump_n;
+    const bool felt = seen_.before(kFeelShare * skill_.reaction_s).force_n[t] > kBump_n;
     if (lifting && !felt && lift_ == Lift::pressing)
         lift_ = Lift::free;
     if (lifting && felt && lift_ == Lift::free) { // a wall above: high enough
@@ -250,7 +238,7 @@ void Hand::keep_pressing(const HandSight& sight) {
         press_.felt_n >= exercise_.force_min_n && press_.felt_n <= exercise_.force_max_n;
     held_ticks_ = in_band ? held_ticks_ + 1 : 0;
 
-    const Percept& seen = perceived(skill_.reaction_s);
+    const Percept& seen = seen_.before(skill_.reaction_s);
     const bool advanced = seen.done || seen.next_target != target_;
     const bool in_vain =
         held_ticks_ * kTick_s > exercise_.hold_s + skill_.reaction_s + kNotice_s ||
@@ -264,7 +252,7 @@ void Hand::keep_pressing(const HandSight& sight) {
 void Hand::keep_tracing(const HandSight& sight) {
     const auto t = static_cast<std::size_t>(tool_);
     advance(press_, glm::length(sight.now.tool[t].force_n));
-    const Percept& seen = perceived(skill_.reaction_s);
+    const Percept& seen = seen_.before(skill_.reaction_s);
     const bool in_band =
         press_.felt_n >= exercise_.force_min_n && press_.felt_n <= exercise_.force_max_n;
     // Steering law (Accot & Zhai 1997): the narrower the path for a hand's own scatter, the slower.
@@ -297,14 +285,13 @@ void Hand::lift_to(const glm::dvec3& to_m) {
 }
 
 HandGoals Hand::tick(const HandSight& sight) {
-    at_ = (at_ + 1) % past_.size();
-    past_[at_] = {{}, {}, sight.next_target, sight.done};
+    seen_.push({{}, {}, sight.next_target, sight.done});
     if (phase_ == Phase::trace) {
-        past_[at_].aside_m =
+        seen_.now().aside_m =
             aside_m(trace_, sight.now, sight.now.tool[static_cast<std::size_t>(tool_)]);
     }
     for (std::size_t t = 0; t < kTools; ++t)
-        past_[at_].force_n[t] = glm::length(sight.now.tool[t].force_n);
+        seen_.now().force_n[t] = glm::length(sight.now.tool[t].force_n);
     ++phase_ticks_;
     switch (phase_) {
     case Phase::wait:

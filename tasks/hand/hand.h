@@ -6,46 +6,12 @@
 // Called by sim once a tick, in the thread that owns the tick; not inside the 1 kHz budget.
 #pragma once
 
-#include "tasks/exercise/exercise.h"
+#include "tasks/hand/late.h"
 #include "tasks/hand/motion.h"
+#include "tasks/hand/sight.h"
 #include "tasks/hand/trace.h"
 
-#include <string>
-#include <vector>
-
 namespace tasks {
-
-struct HandSkill {
-    std::string name = "expert";
-    double reaction_s = 0.25; // between seeing and moving; touch is felt in 0.6 of it
-    double speed_mps = 0.055; // peak of one long movement
-    double tremor_m = 33e-6;  // rms, 3-12 Hz
-    double aim_m = 0.0010;    // sd of a movement's end point, across the line of sight
-    double depth_m = 0.0015;  // sd along the line of sight
-    double force_sd = 0.15;   // sd of ln(pressed force / what was wanted)
-    double lapse = 0.01;      // chance per target of the wrong tool or the wrong place
-    double pause_s = 0.3;     // between movements
-    double path_bow = 0.12;   // sideways detour, sd as a share of the distance
-    double stride_m = 0.060;  // longest way that is planned as one movement
-    double plan_s = 0.3;      // to find the next target and decide, beside the reaction
-};
-/// expert, intermediate, novice, fast-careless, slow-precise; throws std::invalid_argument.
-HandSkill skill_named(std::string_view name);
-/// The same pace and habits without a single error: no noise, no lapse.
-HandSkill without_errors(HandSkill skill);
-
-/// What the hand's owner perceives in this tick.
-struct HandSight {
-    std::int64_t tick = 0;
-    Observation now;
-    int next_target = 0;
-    bool done = false;
-};
-
-struct HandGoals {
-    std::array<glm::dvec3, kTools> tip_m{};
-    std::array<double, kTools> jaw{};
-};
 
 /// One person with three tools, one of them active at a time. Deterministic in (skill, seed, what
 /// it saw). A plan for one target: travel in strides to a point above it, look and correct, go
@@ -68,7 +34,6 @@ class Hand {
         bool done = false;
     };
 
-    const Percept& perceived(double delay_s) const;
     glm::dvec3 line_of_sight(const HandSight& sight) const;
     void pause(double seconds);
     void decide(const HandSight& sight);
@@ -88,8 +53,7 @@ class Hand {
     Random random_;
     std::array<Tremor, kTools> tremor_;
     std::array<glm::dvec3, kTools> goal_m_;
-    std::vector<Percept> past_; // ring, one entry a tick
-    std::size_t at_ = 0;
+    Late<Percept> seen_;
 
     Phase phase_ = Phase::wait;
     Lift lift_ = Lift::pressing;

@@ -23,10 +23,14 @@ constexpr double kMiddle_hz = 6.0, kWidth_hz = 9.0;
 
 } // namespace
 
-glm::dvec3 place_m(const MinimumJerk& move) noexcept {
+double way_share(const MinimumJerk& move) noexcept {
     const double s =
         move.duration_s > 0.0 ? std::clamp(move.time_s / move.duration_s, 0.0, 1.0) : 1.0;
-    const double x = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
+    return s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
+}
+
+glm::dvec3 place_m(const MinimumJerk& move) noexcept {
+    const double x = way_share(move);
     return move.from_m + x * (move.to_m - move.from_m) + 4.0 * x * (1.0 - x) * move.bow_m;
 }
 
@@ -34,6 +38,17 @@ MinimumJerk plan_move(const glm::dvec3& from_m, const glm::dvec3& to_m, double p
     const double length_m = glm::distance(from_m, to_m);
     return {from_m, to_m, glm::dvec3{0.0},
             std::max(kShortestMove_s, kPeakOfMean * length_m / peak_mps), 0.0};
+}
+
+MinimumJerk aimed_move(const HandSkill& skill, Random& random, const glm::dvec3& from_m,
+                       const glm::dvec3& to_m, const glm::dvec3& sight_line) noexcept {
+    constexpr double kUsualMove_m =
+        9.5e-3; // median movement; end points of shorter ones spread less
+    const double spread = std::min(1.0, glm::distance(from_m, to_m) / kUsualMove_m);
+    const glm::dvec3 any{random.normal(), random.normal(), random.normal()};
+    const glm::dvec3 across = any - glm::dot(any, sight_line) * sight_line;
+    const glm::dvec3 error = skill.aim_m * across + skill.depth_m * random.normal() * sight_line;
+    return plan_move(from_m, to_m + spread * error, skill.speed_mps);
 }
 
 glm::dvec3 next_tremor_m(Tremor& tremor, double rms_m) noexcept {

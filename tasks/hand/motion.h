@@ -5,6 +5,7 @@
 
 #include "tasks/exercise/observation.h"
 #include "tasks/hand/random.h"
+#include "tasks/hand/skill.h"
 
 #include <cstddef>
 #include <vector>
@@ -18,12 +19,19 @@ struct MinimumJerk {
     double duration_s = 0.0;
     double time_s = 0.0; // advances with the movement; may be held back
 };
+/// Share of the way done, 0..1.
+double way_share(const MinimumJerk& move) noexcept;
 glm::dvec3 place_m(const MinimumJerk& move) noexcept;
 inline bool arrived(const MinimumJerk& move) noexcept {
     return move.time_s >= move.duration_s;
 }
 /// Straight movement with that peak speed, no quicker than any movement of a hand.
 MinimumJerk plan_move(const glm::dvec3& from_m, const glm::dvec3& to_m, double peak_mps) noexcept;
+
+/// The same with the spread of its end point: smaller for short movements (Harris & Wolpert 1998),
+/// larger along the unit line of sight, because the picture is flat.
+MinimumJerk aimed_move(const HandSkill& skill, Random& random, const glm::dvec3& from_m,
+                       const glm::dvec3& to_m, const glm::dvec3& sight_line) noexcept;
 
 /// Band-pass noise 3-12 Hz, `rms_m` long (three axes together).
 struct Tremor {

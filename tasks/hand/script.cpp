@@ -1,6 +1,7 @@
 #include "tasks/hand/script.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
@@ -12,6 +13,7 @@ constexpr double kRetract_m = 15e-3;
 constexpr double kSpeed_mps = 0.05; // peak of a movement without `seconds`
 constexpr double kPressSpeed_mps = 0.01;
 constexpr double kJaw_s = 0.3;           // of a closing or opening without `seconds`
+constexpr double kLook_s = 1.0;          // of a change of the picture without `seconds`
 constexpr double kPressLimit_s = 5.0;    // without `seconds`
 constexpr double kReached = 0.95;        // of the force: press is over
 constexpr double kMostAdvance_m = 40e-3; // nothing there: do not go on for ever
@@ -141,6 +143,25 @@ bool ScriptHand::slide(const HandSight& sight, const ScriptStep& step) {
     return share >= 1.0;
 }
 
+// Place, distance and horizon together; from wherever it looked before, at once if nowhere.
+bool ScriptHand::look(const HandSight& sight, const ScriptStep& step) {
+    const auto target = static_cast<std::size_t>(std::max(target_of_step_[now_], 0));
+    const ScopeGoal to{.given = true,
+                       .look_at_m = step.at_m.value_or(sight.now.target[target].position_m),
+                       .distance_m = step.distance_m,
+                       .horizon_rad = step.horizon_rad};
+    if (stage_ == Stage::begin) {
+        scope_from_ = scope_.given ? scope_ : to;
+        stage_ = Stage::travel;
+    }
+    const double share = std::min(1.0, elapsed_s_ / step.seconds.value_or(kLook_s));
+    scope_.given = true;
+    scope_.look_at_m = glm::mix(scope_from_.look_at_m, to.look_at_m, share);
+    scope_.distance_m = std::lerp(scope_from_.distance_m, to.distance_m, share);
+    scope_.horizon_rad = std::lerp(scope_from_.horizon_rad, to.horizon_rad, share);
+    return share >= 1.0;
+}
+
 bool ScriptHand::perform(const HandSight& sight, const ScriptStep& step) {
     const std::size_t t = index_of(step);
     const bool begins = stage_ == Stage::begin;
@@ -181,6 +202,8 @@ bool ScriptHand::perform(const HandSight& sight, const ScriptStep& step) {
         return move_jaw(step, 1.0);
     case Verb::release:
         return move_jaw(step, 0.0);
+    case Verb::look:
+        return look(sight, step);
     }
     return true;
 }
@@ -195,7 +218,12 @@ HandGoals ScriptHand::tick(const HandSight& sight) {
             elapsed_s_ = 0.0;
         }
     }
-    return {goal_m_, jaw_};
+    return {goal_m_, jaw_, scope_};
+}
+
+bool holds_scope(const Script& script) noexcept {
+    return std::any_of(script.step.begin(), script.step.end(),
+                       [](const ScriptStep& step) { return step.verb == Verb::look; });
 }
 
 } // namespace tasks

@@ -16,10 +16,13 @@
 //     wait              seconds                        all tools go on as they are
 //     grasp             seconds                        closes the jaws, in 0.3 s if not said
 //     release           seconds                        opens them
+//     look              target or at_mm, distance_mm,  (no tool) the endoscope: straight at that
+//                       seconds, horizon_deg           place, from there, the picture so turned
 //   [[expect]]          metric = "path_length", min, max (one or both)
 #pragma once
 
-#include "tasks/hand/hand.h"
+#include "tasks/hand/motion.h"
+#include "tasks/hand/sight.h"
 #include "tasks/logbook/junit.h"
 #include "tasks/score/metrics.h"
 
@@ -27,7 +30,18 @@
 
 namespace tasks {
 
-enum class Verb : std::uint8_t { move, touch, press, hold, retract, wait, grasp, release, slide };
+enum class Verb : std::uint8_t {
+    move,
+    touch,
+    press,
+    hold,
+    retract,
+    wait,
+    grasp,
+    release,
+    slide,
+    look
+};
 
 struct ScriptStep {
     Verb verb = Verb::wait;
@@ -36,7 +50,8 @@ struct ScriptStep {
     std::optional<glm::dvec3> at_m; // tip centre, world
     std::optional<double> force_n;
     std::optional<double> seconds;
-    std::string where; // "file:line" for messages
+    double distance_m = 0.0, horizon_rad = 0.0; // look
+    std::string where;                          // "file:line" for messages
 };
 
 struct Expectation {
@@ -48,6 +63,9 @@ struct Script {
     std::vector<ScriptStep> step;
     std::vector<Expectation> expect;
 };
+
+/// The script moves the endoscope, which no assistant holds then.
+bool holds_scope(const Script& script) noexcept;
 
 /// Throws std::invalid_argument with file, line, key, value and what would be accepted.
 Script parse_script(std::string_view text, std::string_view file);
@@ -73,6 +91,7 @@ class ScriptHand {
     bool touch(const HandSight& sight, const ScriptStep& step);
     bool slide(const HandSight& sight, const ScriptStep& step);
     bool move_jaw(const ScriptStep& step, double to);
+    bool look(const HandSight& sight, const ScriptStep& step);
 
     Script script_;
     Exercise exercise_;
@@ -83,6 +102,7 @@ class ScriptHand {
     std::array<glm::dvec3, kTools> goal_m_;
     std::array<double, kTools> jaw_{}; // 0 open .. 1 closed
     double jaw_from_ = 0.0;
+    ScopeGoal scope_, scope_from_;
     MinimumJerk move_;
     glm::dvec3 slide_from_m_{0.0}, slide_to_m_{0.0}; // of where the press began
     struct Pressing {

@@ -5,6 +5,7 @@
 #include "tasks/hand/script.h"
 
 #include <algorithm>
+#include <numbers>
 #include <sstream>
 
 namespace tasks {
@@ -32,6 +33,8 @@ void accept_for(Verb verb, const TomlTable& t) {
         return t.accept_only({"tool", "verb", "seconds"});
     case Verb::wait:
         return t.accept_only({"verb", "seconds"});
+    case Verb::look:
+        return t.accept_only({"verb", "target", "at_mm", "distance_mm", "seconds", "horizon_deg"});
     }
 }
 
@@ -39,14 +42,15 @@ ScriptStep parse_step(const TomlTable& t) {
     ScriptStep step;
     step.where = t.where();
     step.verb = static_cast<Verb>(t.choice("verb", {"move", "touch", "press", "hold", "retract",
-                                                    "wait", "grasp", "release", "slide"}));
+                                                    "wait", "grasp", "release", "slide", "look"}));
     accept_for(step.verb, t);
-    if (step.verb != Verb::wait)
+    if (step.verb != Verb::wait && step.verb != Verb::look)
         step.tool = static_cast<Role>(t.choice("tool", {"left", "right", "assist"}));
     if (t.has("target") || step.verb == Verb::touch)
         step.target = t.text("target");
-    if (t.has("at_mm") ||
-        ((step.verb == Verb::move || step.verb == Verb::slide) && step.target.empty()))
+    const bool goes =
+        step.verb == Verb::move || step.verb == Verb::slide || step.verb == Verb::look;
+    if (t.has("at_mm") || (goes && step.target.empty()))
         step.at_m = t.place_mm("at_mm", kPlace_mm);
     if (step.at_m && !step.target.empty())
         t.refuse("at_mm", "either at_mm or target, not both");
@@ -55,6 +59,11 @@ ScriptStep parse_step(const TomlTable& t) {
     if (t.has("seconds") || step.verb == Verb::hold || step.verb == Verb::wait ||
         step.verb == Verb::slide)
         step.seconds = t.number("seconds", kSeconds);
+    if (step.verb == Verb::look) {
+        constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+        step.distance_m = 1e-3 * t.number("distance_mm", {10.0, 500.0});
+        step.horizon_rad = kRadPerDeg * t.number("horizon_deg", {-180.0, 180.0}, 0.0);
+    }
     return step;
 }
 

@@ -1,7 +1,7 @@
 // tasks/hand/skill.cpp
 // The skills of scripted hands, with where each number comes from. Called when an attempt is set
 // up.
-#include "tasks/hand/hand.h"
+#include "tasks/hand/skill.h"
 
 #include <stdexcept>
 

@@ -67,6 +67,7 @@ class Sha256 {
 };
 
 constexpr std::uint8_t kHashedToolFlags = 2 | 4; // present, faulted: inputs; the rest are results
+constexpr std::uint8_t kScopePresent = 2;
 constexpr std::uint8_t kHashedStepFlags = 1;     // warped tangent used: schedule
 
 } // namespace
@@ -100,6 +101,12 @@ void LogHash::add(const TickTrace& tick) {
             record.integer(count);
         record.integer(tool.roll_counts).integer(tool.jaw_counts);
         record.integer(static_cast<std::uint8_t>(tool.flags & kHashedToolFlags));
+    }
+    if (tick.scope.flags & kScopePresent) { // attempts of before keep the hash that they had
+        for (const std::int32_t count : tick.scope.counts)
+            record.integer(count);
+        record.integer(tick.scope.camera_counts).integer(tick.scope.optic_counts);
+        record.integer(tick.scope.flags);
     }
     impl_->ticks.add(record.bytes());
 }

@@ -8,6 +8,8 @@
 //   column  = for every row: varint(zigzag(value - value of the row before, first 0)), mod 2^64
 //   columns = in the order of tick_columns() and step_columns(); then, for every target index t,
 //             x, y and z over the steps that have more than t targets
+//   format 2 ends with the endoscope's columns, stress and, for every target index, clear rays; what
+//   a recording of format 1 does not have is zero
 #include "tasks/logbook/trace.h"
 
 #include "tasks/logbook/bytes.h"
@@ -20,11 +22,11 @@ namespace tasks {
 namespace {
 
 constexpr std::array<std::byte, 4> kMagic{std::byte{'T'}, std::byte{'R'}, std::byte{'C'},
-                                          std::byte{1}};
+                                          std::byte{2}};
 // A chunk holds one second; ten leave room for a recorder that came late.
 constexpr std::size_t kMaxRows = 10'000;
-// Worst case: all columns of kMaxRows ticks and steps, ten bytes each, is below 10 MB.
-constexpr std::size_t kMaxRawBytes = 10'000'000;
+// Worst case: all columns of kMaxRows ticks and steps, ten bytes each, is below 12 MB.
+constexpr std::size_t kMaxRawBytes = 12'000'000;
 constexpr int kZstdLevel = 6; // on seeded motion 12 saves 1 % for three times the time
 
 [[noreturn]] void refuse(const std::string& why) {
@@ -56,8 +58,23 @@ template <class Column> void step_columns(Column&& column) {
     column([](auto& row) -> auto& { return row.targets; });
 }
 constexpr std::size_t kStepColumns = 5;
-static_assert(kMaxRows * 10 * (kTickColumns + kStepColumns + 3 * std::size_t{kMaxTargets}) <
+
+template <class Column> void scope_columns(Column&& column) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        column([=](auto& row) -> auto& { return row.scope.counts[axis]; });
+    column([](auto& row) -> auto& { return row.scope.camera_counts; });
+    column([](auto& row) -> auto& { return row.scope.optic_counts; });
+    column([](auto& row) -> auto& { return row.scope.flags; });
+}
+constexpr std::size_t kScopeColumns = 6;
+static_assert(kMaxRows * 10 *
+                  (kTickColumns + kScopeColumns + kStepColumns + 1 + 4 * std::size_t{kMaxTargets}) <
               kMaxRawBytes);
+
+template <class Column> void sight_columns(Column&& column) {
+    for (std::size_t t = 0; t < kMaxTargets; ++t)
+        column(static_cast<int>(t), [=](auto& row) -> auto& { return row.clear_rays[t]; });
+}
 
 template <class Column> void target_columns(Column&& column) {
     for (std::size_t t = 0; t < kMaxTargets; ++t)
@@ -101,6 +118,7 @@ void read_column(VarintReader& reader, std::vector<Row>& rows, Get get, Has has)
 }
 
 constexpr auto kAll = [](const auto&) { return true; };
+constexpr auto kStress = [](auto& row) -> auto& { return row.stress_pa; };
 
 auto has_target(int target) {
     return [target](const StepTrace& step) { return step.targets > target; };
@@ -135,9 +153,9 @@ std::vector<std::byte> decompressed(std::span<const std::byte> bytes) {
     if (bytes.size() < kMagic.size() ||
         !std::equal(kMagic.begin(), kMagic.end() - 1, bytes.begin()))
         refuse("does not begin with TRC");
-    if (bytes[3] != kMagic[3])
+    if (bytes[3] != kMagic[3] && bytes[3] != std::byte{1})
         refuse("format " + std::to_string(std::to_integer<int>(bytes[3])) +
-               ", this build reads format 1");
+               ", this build reads formats 1 and 2");
     const auto frame = bytes.subspan(kMagic.size());
     const unsigned long long size = ZSTD_getFrameContentSize(frame.data(), frame.size());
     if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN)
@@ -168,6 +186,9 @@ std::vector<std::byte> encode_chunk(std::span<const TickTrace> ticks,
     tick_columns([&](auto get) { writer.column(ticks, get, kAll); });
     step_columns([&](auto get) { writer.column(steps, get, kAll); });
     target_columns([&](int target, auto get) { writer.column(steps, get, has_target(target)); });
+    scope_columns([&](auto get) { writer.column(ticks, get, kAll); });
+    writer.column(steps, kStress, kAll);
+    sight_columns([&](int target, auto get) { writer.column(steps, get, has_target(target)); });
     return compressed(writer.bytes);
 }
 
@@ -189,6 +210,13 @@ Chunk decode_chunk(std::span<const std::byte> bytes) {
     check_targets(chunk.steps);
     target_columns(
         [&](int target, auto get) { read_column(reader, chunk.steps, get, has_target(target)); });
+    if (bytes[3] != std::byte{1}) {
+        scope_columns([&](auto get) { read_column(reader, chunk.ticks, get, kAll); });
+        read_column(reader, chunk.steps, kStress, kAll);
+        sight_columns([&](int target, auto get) {
+            read_column(reader, chunk.steps, get, has_target(target));
+        });
+    }
     if (reader.left() != 0)
         refuse(std::to_string(reader.left()) + " bytes after the last column");
     return chunk;

@@ -37,6 +37,8 @@ constexpr MetricDefinition kDefinitions[] = {
     {"errors.out_of_view", "Worked unseen", 1, "1", less, false},
     {"errors.path_left", "Left the path", 1, "1", less, false},
     {"errors.order_broken", "Order broken", 1, "1", less, false},
+    {"errors.tube_not_pointed", "Tube seen, not pointed at", 1, "1", less, false},
+    {"errors.tube_not_seen", "Tube pointed at, not seen", 1, "1", less, false},
     {"deviation_mean", "Mean distance from path", 1, "m", less, false},
     {"deviation_rms", "RMS distance from path", 1, "m", less, false},
     {"deviation_max", "Largest distance from path", 1, "m", less, false},
@@ -44,6 +46,12 @@ constexpr MetricDefinition kDefinitions[] = {
     {"path_in_band", "Share of right force", 1, "1", more, false, true},
     {"path_coverage", "Share of path followed", 1, "1", more, false, true},
     {"path_breaks", "Gaps", 1, "1", less, false},
+    {"tubes_found", "Tubes found", 1, "1", more, false},
+    {"retraction_force", "Mean force of the lift", 1, "N", less, false, true},
+    {"retraction_force_peak", "Peak force of the lift", 1, "N", less, false, true},
+    {"horizon_rms", "Picture off level", 1, "rad", less, false},
+    {"horizon_over", "Picture over 15 degrees off", 1, "1", less, false},
+    {"stress_peak", "Peak stress in tissue", 1, "Pa", less, false, true},
 };
 
 constexpr std::array<std::string_view, 4> kRoles{"left", "right", "assist", "scope"};

@@ -1,6 +1,7 @@
 #include "tasks/score/metrics.h"
 
 #include "tasks/score/definition.h"
+#include "tasks/score/scope_metrics.h"
 #include "tasks/score/smoothness.h"
 #include "tasks/score/sums.h"
 
@@ -70,9 +71,10 @@ void report_forces(Report& report, const Sums& sums, const std::string& of) {
 }
 
 void report_errors(Report& report, const Progress& progress) {
-    constexpr std::array<EventKind, 6> kinds{EventKind::wrong_role, EventKind::over_force,
-                                             EventKind::off_target, EventKind::out_of_view,
-                                             EventKind::path_left,  EventKind::order_broken};
+    constexpr std::array<EventKind, 8> kinds{EventKind::wrong_role,       EventKind::over_force,
+                                             EventKind::off_target,       EventKind::out_of_view,
+                                             EventKind::path_left,        EventKind::order_broken,
+                                             EventKind::tube_not_pointed, EventKind::tube_not_seen};
     const auto count = [&](EventKind kind) {
         return static_cast<double>(
             std::count_if(progress.events.begin(), progress.events.end(),
@@ -99,12 +101,32 @@ std::optional<double> bimanual(const std::array<std::vector<double>, kTools>& sp
     return speed_correlation(of(Role::left), of(Role::right));
 }
 
+// The endoscope and the tissue, over the same time as the tools.
+void report_scope(Report& report, const ScoreState& score, const Window& window) {
+    if (window.count == 0)
+        return;
+    if (score.eye_m.size() == score.stress_pa.size()) {
+        const ScopeSums scope = scope_sums(score, window);
+        report.add("path_length.scope", scope.path_m);
+        report.add("horizon_rms", scope.horizon_rms_rad);
+        report.add("horizon_over", scope.horizon_over);
+    }
+    const auto first = score.stress_pa.begin() + static_cast<std::ptrdiff_t>(window.first);
+    const auto last = first + static_cast<std::ptrdiff_t>(window.count);
+    report.add("stress_peak", static_cast<double>(*std::max_element(first, last)));
+}
+
 } // namespace
 
 void observe(ScoreState& score, const Observation& seen) {
     if (score.last_tick < 0)
         score.first_tick = seen.tick;
     score.last_tick = seen.tick;
+    if (seen.scope_present) {
+        score.eye_m.push_back(seen.view.eye_m);
+        score.horizon_rad.push_back(static_cast<float>(seen.horizon_rad));
+    }
+    score.stress_pa.push_back(static_cast<float>(seen.stress_pa));
     for (std::size_t t = 0; t < kTools; ++t) {
         const ToolObservation& tool = seen.tool[t];
         score.tip_m[t].push_back(tool.tip_m);
@@ -148,6 +170,7 @@ std::vector<Metric> finish(const ScoreState& score, const Progress& progress,
             report_sums(tools[t], "." + std::string(role_name(context.role[t])));
     report.add("bimanual", bimanual(speed_mps, context.role));
     report_errors(report, progress);
+    report_scope(report, score, window);
     return std::move(report.list_);
 }
 

@@ -20,8 +20,8 @@ struct Metric {
     std::int64_t first_tick = 0, last_tick = 0; // samples it rests on
 };
 
-/// 61 bytes per tool and tick: 110 MB for ten minutes of three tools, and up to twice that while
-/// the vectors grow.
+/// 61 bytes per tool and tick, 32 beside: 130 MB for ten minutes of three tools, and up to twice
+/// that while the vectors grow.
 struct ScoreState {
     std::array<std::vector<glm::dvec3>, kTools> tip_m;     // 1 kHz
     std::array<std::vector<glm::vec3>, kTools> shaft;      // unit, handle to tip
@@ -30,6 +30,9 @@ struct ScoreState {
     std::array<std::vector<glm::vec3>, kTools> force_on_n; // on the tip
     std::array<std::vector<float>, kTools> force_n;        // its length
     std::array<std::vector<std::uint8_t>, kTools> flags;   // 1 touching, 2 in view, 4 present
+    std::vector<glm::dvec3> eye_m;  // of the endoscope; empty if the picture is fixed
+    std::vector<float> horizon_rad; // as long
+    std::vector<float> stress_pa;   // largest in the tissue
     std::int64_t first_tick = 0, last_tick = -1;
 };
 /// One millisecond. Ticks follow each other: a paused attempt's ticks stand still. Pure, resumable.
@@ -68,6 +71,10 @@ struct ScoreContext {
 ///   force_mean*, force_peak*, impulse*   N, N, N s over contact ticks; 0 without contact
 ///   work*                   J, integral of max(0, F . v) over contact ticks; F on the tissue
 ///   over_force*             s above the limit (combined: any tool above it), unfiltered
+///   path_length.scope       m, of the endoscope's eye; with the next two absent if it is fixed
+///   horizon_rms             rad, of the picture's turn against a level one
+///   horizon_over            share of time above 15 degrees
+///   stress_peak             Pa, largest von Mises stress in any element of any organ
 ///   over_force_episodes, errors, errors.KIND for every kind of error   counts, from the events
 /// * also per role, as id.left, id.right, id.assist, for tools that were present.
 std::vector<Metric> finish(const ScoreState& score, const Progress& progress,

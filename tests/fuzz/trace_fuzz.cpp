@@ -29,9 +29,12 @@ void decode(std::span<const std::byte> bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const auto bytes = std::as_bytes(std::span(data, size));
     decode(bytes);
-    std::vector<std::byte> chunk{std::byte{'T'}, std::byte{'R'}, std::byte{'C'}, std::byte{1}};
-    chunk.resize(4 + ZSTD_compressBound(size));
-    chunk.resize(4 + ZSTD_compress(chunk.data() + 4, chunk.size() - 4, data, size, 1));
-    decode(chunk);
+    for (const int format : {1, 2}) {
+        std::vector<std::byte> chunk{std::byte{'T'}, std::byte{'R'}, std::byte{'C'},
+                                     static_cast<std::byte>(format)};
+        chunk.resize(4 + ZSTD_compressBound(size));
+        chunk.resize(4 + ZSTD_compress(chunk.data() + 4, chunk.size() - 4, data, size, 1));
+        decode(chunk);
+    }
     return 0;
 }

@@ -70,7 +70,7 @@ Counted count_attempt(bool jaws, int ticks) {
     tasks::TickTrace trace;
     sim::ToolsNow sampled;
     Counted count;
-    tasks::HandSight sight = sim::sight_of(*session, trace, 0, false);
+    tasks::HandSight sight = sim::sight_of(*session, trace, 0, 0, false);
     for (int tick = 0; tick < ticks; ++tick) {
         if (tick > 0 && tick % 10 == 0) {
             allocations = 0;
@@ -94,7 +94,7 @@ Counted count_attempt(bool jaws, int ticks) {
         }
         if (tick % 10 == 0)
             sampled = exchange.tools.latest();
-        sight = sim::sight_of(*session, trace, 0, false);
+        sight = sim::sight_of(*session, trace, 0, 0, false);
     }
     return count;
 }

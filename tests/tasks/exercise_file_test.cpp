@@ -71,7 +71,7 @@ TEST_CASE("a mistake in an exercise file is named by file, line, key, value and 
     CHECK(said("[20, 0, 0]", "[20, 0]") ==
           "x.toml:13: at_mm = [20,0]: [x, y, z] in millimetres, each -500 to 500");
     CHECK(said("force_limit_n = 3", "force_limt_n = 3") ==
-          "x.toml:5: force_limt_n = 3: unknown key; accepted here: kind, id, title, card, "
+          "x.toml:5: force_limt_n = 3: unknown key; accepted here: kind, id, title, card, scope, "
           "radius_m, force_min_n, force_max_n, hold_s, force_limit_n, time_limit_s, target, level");
     CHECK(said("title = \"T\"\n", "") == "x.toml:1: title is missing: text in quotes");
     CHECK(said("id = \"2\"", "id = \"1\"") ==
@@ -209,7 +209,7 @@ TEST_CASE("a path's file becomes numbered points of one role, 4 mm wide unless i
 
 TEST_CASE("a mistake in a path's file is named by its line and what is accepted") {
     CHECK(message(replaced(kPath, "follow-path", "follow")) ==
-          "x.toml:1: kind = \"follow\": one of \"touch-points\", \"follow-path\"");
+          "x.toml:1: kind = \"follow\": one of \"touch-points\", \"follow-path\", \"find-tubes\"");
     CHECK(message(replaced(kPath, "[25, 0, 0]", "[26, 0, 0]")) ==
           "x.toml:9: at_mm = [26,0,0]: a place 2 to 25 mm from the point before; it is 26 mm from "
           "it");

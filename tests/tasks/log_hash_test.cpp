@@ -74,6 +74,12 @@ TEST_CASE("the log hash is the one that an independent program computes from the
     CHECK(tasks::LogHash().finish() ==
           "67f802cdd3df680362a6f64b31d9a76662a8aef90ee68bb26c9bfdd72e27f670");
     CHECK(Log().hash() == "1d24a066112c12ff7dfa95bc0b4ca230347df6f91dc6b3135bd59ea446b567dc");
+    const auto with_scope = [](Log& log) {
+        log.ticks[0].scope = {
+            .counts = {1, -2, 3}, .camera_counts = 4, .optic_counts = -5, .flags = 2 | 8};
+    };
+    CHECK(hash_after(with_scope) ==
+          "c583122eaf07711b8beab09fef92a68c0a930ca8d44480afd533d2598929207f");
 }
 
 TEST_CASE("ids, dates, durations, hands and results do not change the log hash") {

@@ -40,3 +40,9 @@ metrics += struct.pack("<BBqq", 1, 0, 10, 999)
 
 print("empty", whole(b"", b"", b"", b"", b""))
 print("full ", whole(setup, ticks, steps, events, metrics))
+one = struct.pack("<qq", 5, -1)
+for tool in range(3):
+    one += struct.pack("<5iB", 100 * tool + 5, -tool, 2**31 - 1, 7, -8, [2, 4, 6][tool])
+one += struct.pack("<5iB", 1, -2, 3, 4, -5, 2 | 8)
+two = ticks[len(ticks) // 2:]
+print("scope", whole(setup, one + two, steps, events, metrics))

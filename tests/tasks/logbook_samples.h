@@ -171,11 +171,15 @@ inline bool same(const tasks::TickTrace& a, const tasks::TickTrace& b) {
     for (std::size_t k = 0; k < tasks::kTools; ++k)
         if (!same(a.tool[k], b.tool[k]))
             return false;
-    return a.tick == b.tick && a.adopted_step == b.adopted_step;
+    const tasks::ScopeTrace &s = a.scope, &z = b.scope;
+    return a.tick == b.tick && a.adopted_step == b.adopted_step && s.counts == z.counts &&
+           s.camera_counts == z.camera_counts && s.optic_counts == z.optic_counts &&
+           s.flags == z.flags;
 }
 inline bool same(const tasks::StepTrace& a, const tasks::StepTrace& b) {
     return a.step == b.step && a.sample_tick == b.sample_tick && a.duration_us == b.duration_us &&
-           a.flags == b.flags && a.targets == b.targets && a.target_um == b.target_um;
+           a.flags == b.flags && a.stress_pa == b.stress_pa && a.targets == b.targets &&
+           a.target_um == b.target_um && a.clear_rays == b.clear_rays;
 }
 template <class Row> bool same(std::span<const Row> a, std::span<const Row> b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(),

@@ -143,7 +143,8 @@ TEST_CASE("without forces the force metrics say that they were not felt") {
     const Scored s = scored(500, circle, context);
     for (const Metric& metric : s.metrics) {
         const bool of_force = metric.id.find("force") != std::string::npos ||
-                              metric.id.starts_with("impulse") || metric.id.starts_with("work");
+                              metric.id.starts_with("impulse") || metric.id.starts_with("work") ||
+                              metric.id.starts_with("stress");
         CHECK_MESSAGE(metric.felt == !of_force, metric.id);
     }
 }

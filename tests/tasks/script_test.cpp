@@ -138,7 +138,7 @@ TEST_CASE("a press that meets nothing ends with its time and stops within 40 mm"
 TEST_CASE("a mistake in a script is named by file, line, key, value and what is accepted") {
     CHECK(message("[[step]]\nverb = \"push\"\n") ==
           "s.toml:2: verb = \"push\": one of \"move\", \"touch\", \"press\", \"hold\", "
-          "\"retract\", \"wait\", \"grasp\", \"release\", \"slide\"");
+          "\"retract\", \"wait\", \"grasp\", \"release\", \"slide\", \"look\"");
     CHECK(message("[[step]]\nverb = \"grasp\"\ntool = \"left\"\nforce_n = 1\n") ==
           "s.toml:4: force_n = 1: unknown key; accepted here: tool, verb, seconds");
     CHECK(message("[[step]]\nverb = \"wait\"\n") ==

@@ -26,6 +26,10 @@ std::vector<tasks::TickTrace> any_ticks(std::size_t count) {
             tool.jaw_counts = *rc::gen::arbitrary<std::int32_t>();
             tool.flags = *rc::gen::arbitrary<std::uint8_t>();
         }
+        row.scope.counts = *rc::gen::arbitrary<std::array<std::int32_t, 3>>();
+        row.scope.camera_counts = *rc::gen::arbitrary<std::int32_t>();
+        row.scope.optic_counts = *rc::gen::arbitrary<std::int32_t>();
+        row.scope.flags = *rc::gen::arbitrary<std::uint8_t>();
     }
     return ticks;
 }
@@ -37,17 +41,19 @@ std::vector<tasks::StepTrace> any_steps(std::size_t count) {
         row.sample_tick = *rc::gen::arbitrary<std::int64_t>();
         row.duration_us = *rc::gen::arbitrary<std::int32_t>();
         row.flags = *rc::gen::arbitrary<std::uint8_t>();
+        row.stress_pa = *rc::gen::arbitrary<std::int32_t>();
         row.targets = *rc::gen::inRange(0, tasks::kMaxTargets + 1);
-        for (int t = 0; t < row.targets; ++t)
-            row.target_um[static_cast<std::size_t>(t)] =
-                *rc::gen::arbitrary<std::array<std::int32_t, 3>>();
+        for (std::size_t t = 0; t < static_cast<std::size_t>(row.targets); ++t) {
+            row.target_um[t] = *rc::gen::arbitrary<std::array<std::int32_t, 3>>();
+            row.clear_rays[t] = *rc::gen::arbitrary<std::uint8_t>();
+        }
     }
     return steps;
 }
 
 // A chunk around a payload of our choice, so that damage gets past the checksum.
 std::vector<std::byte> chunk_around(std::span<const std::byte> payload) {
-    std::vector<std::byte> bytes{std::byte{'T'}, std::byte{'R'}, std::byte{'C'}, std::byte{1}};
+    std::vector<std::byte> bytes{std::byte{'T'}, std::byte{'R'}, std::byte{'C'}, std::byte{2}};
     bytes.resize(4 + ZSTD_compressBound(payload.size()));
     bytes.resize(
         4 + ZSTD_compress(bytes.data() + 4, bytes.size() - 4, payload.data(), payload.size(), 1));
@@ -112,7 +118,10 @@ TEST_CASE("places beyond the number of targets are not kept") {
     steps[0].targets = 1;
     steps[0].target_um[0] = {1, 2, 3};
     steps[0].target_um[1] = {4, 5, 6};
+    steps[0].clear_rays = {7, 7};
     const tasks::Chunk chunk = tasks::decode_chunk(tasks::encode_chunk({}, steps));
+    CHECK(chunk.steps[0].clear_rays[0] == 7);
+    CHECK(chunk.steps[0].clear_rays[1] == 0);
     CHECK(chunk.steps[0].target_um[0] == std::array<std::int32_t, 3>{1, 2, 3});
     CHECK(chunk.steps[0].target_um[1] == std::array<std::int32_t, 3>{0, 0, 0});
 }
@@ -134,6 +143,38 @@ TEST_CASE("ten minutes of three trembling tools take less than 10 MB") {
     CHECK(exact);
     MESSAGE("one minute: " << bytes << " bytes");
     CHECK(10 * bytes < 10'000'000);
+}
+
+TEST_CASE("a recording of format 1, from before there was an endoscope, is read as it was") {
+    // written by the last build of that format: two ticks, one step with two targets
+    const std::string_view hex =
+        "5452430128b52ffd2465850200d40302010e02010800020002fff0040000000a00050000020000d00f00040"
+        "0c801010004000202060090030300040004040800060c88270204020406070a0b0700200890354802f682ac"
+        "fdcc6acb8101cc6bf68e";
+    std::vector<std::byte> bytes;
+    for (std::size_t i = 0; i < hex.size(); i += 2)
+        bytes.push_back(
+            static_cast<std::byte>(std::stoi(std::string(hex.substr(i, 2)), nullptr, 16)));
+    std::vector<tasks::TickTrace> ticks(2);
+    for (int i = 0; i < 2; ++i) {
+        ticks[i].tick = 7 + i;
+        ticks[i].adopted_step = i == 0 ? -1 : 3;
+        for (int k = 0; k < 3; ++k)
+            ticks[i].tool[k] = {.counts = {100 * k + i, -k, 5},
+                                .roll_counts = k,
+                                .jaw_counts = 1000,
+                                .force_mn = {i, 2, -3},
+                                .contact_um = {-40000, k, i},
+                                .flags = static_cast<std::uint8_t>(2 + k)};
+    }
+    std::vector<tasks::StepTrace> steps(1);
+    steps[0] = {.step = 3, .sample_tick = 6, .duration_us = 2500, .flags = 1, .targets = 2};
+    steps[0].target_um[0] = {1, 2, 3};
+    steps[0].target_um[1] = {-4, 5, -6};
+    CHECK(same(tasks::decode_chunk(bytes), ticks, steps));
+    bytes[3] = std::byte{3};
+    CHECK_THROWS_WITH_AS(tasks::decode_chunk(bytes), doctest::Contains("formats 1 and 2"),
+                         std::invalid_argument);
 }
 
 TEST_CASE("the encoder refuses what the decoder would") {

@@ -1,0 +1,342 @@
+#include "tasks/hand/find_hand.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+namespace tasks {
+namespace {
+
+constexpr double kHover_m = 12e-3;   // tip above the place before going down or near
+constexpr double kMoreRoom_m = 4e-3; // added after each bump
+constexpr double kMostRoom_m = 40e-3;
+constexpr double kArc = 0.15;          // height of a route over its straight line
+constexpr double kFeelShare = 0.6;     // touch is quicker than sight
+constexpr double kBump_n = 0.06;       // felt on the way: something is there
+constexpr double kApproachShare = 0.3; // of the speed, going down
+constexpr double kCarryShare = 0.6;    // of the speed, with tissue in the jaws
+constexpr double kDepthSeen = 0.5;     // share of the depth error that a second look still leaves
+constexpr double kDeeper_m = 2e-3;     // past the first touch, so that the jaws have something
+constexpr double kNotFound_m = 12e-3;  // past the place where the tissue should have been
+constexpr double kJaw_s = 0.3;
+constexpr double kComesAlong_m = 12e-3; // what is held stays so near to the tip
+constexpr double kPointShare = 0.75;    // of the radius: how near people point, without touching
+constexpr double kGoodShare = 0.9;      // of the radius: near enough, no correction
+constexpr double kNotice_s = 1.0;       // pointing well and nothing happens: something is wrong
+constexpr double kGiveUp_s = 8.0;
+constexpr double kMostPull = 0.7; // of the force limit: no further
+constexpr int kMaxCorrections = 4;
+
+int ticks(double seconds) {
+    return static_cast<int>(std::lround(seconds / kTick_s));
+}
+
+} // namespace
+
+FindHand::FindHand(const HandSkill& skill, const Exercise& exercise, std::uint64_t seed,
+                   const std::array<glm::dvec3, kTools>& start_tip_m)
+    : skill_(skill), exercise_(exercise), random_(seed), goal_m_(start_tip_m),
+      seen_(skill.reaction_s), room_m_(kHover_m) {
+    for (std::size_t t = 0; t < kTools; ++t)
+        tremor_[t].random = Random(seed ^ (0x9e3779b97f4a7c15u * (t + 1)));
+    pause(skill_.reaction_s + skill_.plan_s);
+}
+
+void FindHand::pause(double seconds) {
+    phase_ = Phase::wait;
+    wait_ticks_ = ticks(seconds);
+}
+
+glm::dvec3 FindHand::line_of_sight(const HandSight& sight, const glm::dvec3& to_m) const {
+    const glm::dvec3 to = to_m - sight.now.view.eye_m;
+    return glm::length(to) > 1e-3 ? glm::normalize(to) : sight.now.view.forward;
+}
+
+FindHand::Percept FindHand::percept_of(const HandSight& sight) const {
+    Percept now;
+    for (std::size_t t = 0; t < kTools; ++t) {
+        now.force_n[t] = glm::length(sight.now.tool[t].force_n);
+        now.touching[t] = sight.now.tool[t].touching;
+    }
+    if (exercise_.lift) {
+        const ToolObservation& tool =
+            sight.now.tool[static_cast<std::size_t>(exercise_.lift->role)];
+        const glm::dvec3& place = sight.now.target[exercise_.target.size()].position_m;
+        now.holding = tool.grasping &&
+                      glm::distance(tool.tip_m, place) < kComesAlong_m + exercise_.lift->radius_m;
+    }
+    now.found = sight.found;
+    now.done = sight.done;
+    return now;
+}
+
+// Where the tip has to be: above the place, or there.
+glm::dvec3 FindHand::place_wanted(const HandSight& sight) const {
+    const std::size_t k = lifting_ ? exercise_.target.size() : static_cast<std::size_t>(tube_);
+    const Target& target = sight.now.target[k];
+    const double above_m = near_ ? kPointShare * exercise_.radius_m : room_m_;
+    return target.position_m + offset_m_ + above_m * target.normal;
+}
+
+// What is up stays up; else it is lifted first. Then the next tube, and the way there.
+void FindHand::decide(const HandSight& sight) {
+    const Percept& seen = seen_.before(skill_.reaction_s);
+    if (seen.done) {
+        phase_ = Phase::finished;
+        return;
+    }
+    const int before = lifting_ ? -1 : tube_;
+    lifting_ = exercise_.lift && !seen.holding;
+    offset_m_ = glm::dvec3{0.0};
+    mistaken_ = near_ = false;
+    if (lifting_) {
+        tool_ = static_cast<int>(exercise_.lift->role);
+        jaw_[static_cast<std::size_t>(tool_)] = 0.0;
+    } else {
+        choose_tube(seen.found);
+        tool_ = static_cast<int>(exercise_.target[static_cast<std::size_t>(tube_)].role);
+        if (tube_ != before) {
+            room_m_ = kHover_m;
+            if (random_.uniform() < skill_.lapse)
+                lapse(sight);
+        }
+    }
+    route_from_m_ = goal();
+    route_to_m_ = place_wanted(sight);
+    const double way_m = glm::distance(route_from_m_, route_to_m_);
+    strides_ = std::max(1, static_cast<int>(std::ceil(way_m / skill_.stride_m)));
+    stride_ = corrections_ = 0;
+    next_stride(sight);
+}
+
+void FindHand::choose_tube(std::uint32_t found) {
+    const int tubes = static_cast<int>(exercise_.target.size());
+    tube_ = 0;
+    while (tube_ + 1 < tubes && (found & (1U << tube_)))
+        ++tube_;
+}
+
+// The wrong tool, but never the one that holds; or a place 4-7 radii beside the tube.
+void FindHand::lapse(const HandSight& sight) {
+    mistaken_ = true;
+    if (random_.uniform() < 0.5) {
+        const int other = (tool_ + (random_.uniform() < 0.5 ? 1 : 2)) % kTools;
+        if (!exercise_.lift || other != static_cast<int>(exercise_.lift->role))
+            tool_ = other;
+        else
+            tool_ = kTools - other - tool_;
+        return;
+    }
+    const glm::dvec3 normal = sight.now.target[static_cast<std::size_t>(tube_)].normal;
+    const glm::dvec3 side = glm::normalize(
+        glm::cross(normal, std::abs(normal.x) < 0.7 ? glm::dvec3{1, 0, 0} : glm::dvec3{0, 1, 0}));
+    const double angle = 2.0 * std::numbers::pi * random_.uniform();
+    const double far_m = exercise_.radius_m * (4.0 + 3.0 * random_.uniform());
+    offset_m_ = far_m * (std::cos(angle) * side + std::sin(angle) * glm::cross(normal, side));
+}
+
+// Along the route, an arc towards the eye over the straight line, to the end of the next piece.
+void FindHand::next_stride(const HandSight& sight) {
+    const glm::dvec3 way = route_to_m_ - route_from_m_;
+    const double length_m = glm::length(way);
+    const glm::dvec3 up = -line_of_sight(sight, route_to_m_);
+    const double lift_m = phase_ == Phase::lift ? 0.0 : kArc * length_m;
+    const auto at = [&](double u) {
+        return route_from_m_ + u * way + (4.0 * u * (1.0 - u) * lift_m) * up;
+    };
+    const double before = static_cast<double>(stride_) / strides_;
+    const double after = static_cast<double>(++stride_) / strides_;
+    const glm::dvec3 to = at(after);
+    move_ = aimed_move(skill_, random_, goal(), to, line_of_sight(sight, to));
+    move_.bow_m = at(0.5 * (before + after)) - 0.5 * (at(before) + to) +
+                  skill_.path_bow * random_.normal() * glm::cross(to - goal(), up);
+    if (phase_ == Phase::lift)
+        move_.duration_s /= kCarryShare;
+    else
+        phase_ = Phase::travel;
+    phase_ticks_ = 0;
+}
+
+void FindHand::back_off(const glm::dvec3& way_m) {
+    move_ = plan_move(goal(), goal() + way_m, skill_.speed_mps);
+    phase_ = Phase::leave;
+    phase_ticks_ = 0;
+}
+
+// In the air. What is met on the way is in the way: back along the shaft, and with more room.
+void FindHand::travel(const HandSight& sight) {
+    const auto t = static_cast<std::size_t>(tool_);
+    move_.time_s += kTick_s;
+    goal() = place_m(move_);
+    const bool felt = seen_.before(kFeelShare * skill_.reaction_s).force_n[t] > kBump_n;
+    if (phase_ == Phase::travel && felt && !near_) {
+        room_m_ = std::min(room_m_ + kMoreRoom_m, kMostRoom_m);
+        back_off(-room_m_ * sight.now.tool[t].shaft);
+        return;
+    }
+    if (!arrived(move_))
+        return;
+    if (phase_ == Phase::leave) {
+        pause(skill_.pause_s + skill_.plan_s);
+        return;
+    }
+    phase_ = Phase::look;
+    wait_ticks_ = ticks(skill_.pause_s);
+}
+
+// After the pause: on along the route, or correct what is seen to be wrong, or go to work.
+void FindHand::look(const HandSight& sight) {
+    if (stride_ < strides_) {
+        next_stride(sight);
+        return;
+    }
+    const glm::dvec3 wanted = place_wanted(sight);
+    const glm::dvec3 sight_line = line_of_sight(sight, wanted);
+    const glm::dvec3 error = sight.now.tool[static_cast<std::size_t>(tool_)].tip_m - wanted;
+    const double depth = glm::dot(error, sight_line);
+    const double depth_seen = depth + kDepthSeen * skill_.depth_m * random_.normal();
+    const glm::dvec3 across = error - depth * sight_line;
+    // Nobody corrects much less than he errs.
+    const double good_m = 0.15 * exercise_.radius_m + 0.5 * skill_.aim_m;
+    if ((glm::length(across) > good_m || std::abs(depth_seen) > 0.3 * kHover_m) &&
+        corrections_ < kMaxCorrections) {
+        ++corrections_;
+        route_from_m_ = goal();
+        route_to_m_ = goal() - across - depth_seen * sight_line;
+        stride_ = 0;
+        strides_ = 1;
+        next_stride(sight);
+        return;
+    }
+    phase_ticks_ = 0;
+    if (lifting_) {
+        phase_ = Phase::descend;
+        deep_m_ = 0.0;
+    } else if (near_) {
+        phase_ = Phase::point;
+    } else { // from above the tube to it
+        near_ = true;
+        corrections_ = 0;
+        route_from_m_ = goal();
+        route_to_m_ = goal() + place_wanted(sight) - wanted;
+        stride_ = 0;
+        strides_ = 1;
+        next_stride(sight);
+    }
+}
+
+// Down until it is touched, and a little deeper; then the jaws close.
+void FindHand::descend(const HandSight& sight) {
+    const glm::dvec3 down = -sight.now.target[exercise_.target.size()].normal;
+    const double way_m = kApproachShare * skill_.speed_mps * kTick_s;
+    const Percept& seen = seen_.before(kFeelShare * skill_.reaction_s);
+    const bool touched = seen.touching[static_cast<std::size_t>(tool_)];
+    goal() += way_m * down;
+    deep_m_ += touched ? way_m : 0.0;
+    if (deep_m_ >= kDeeper_m) {
+        phase_ = Phase::close;
+        phase_ticks_ = 0;
+    } else if (phase_ticks_ * way_m > room_m_ + kNotFound_m) {
+        back_off(-room_m_ * down);
+    }
+}
+
+void FindHand::close_jaws() {
+    double& jaw = jaw_[static_cast<std::size_t>(tool_)];
+    jaw = std::min(1.0, phase_ticks_ * kTick_s / kJaw_s);
+    if (phase_ticks_ * kTick_s < kJaw_s + skill_.reaction_s)
+        return;
+    route_from_m_ = goal();
+    route_to_m_ = exercise_.lift->to_m;
+    const double way_m = glm::distance(route_from_m_, route_to_m_);
+    strides_ = std::max(1, static_cast<int>(std::ceil(way_m / skill_.stride_m)));
+    stride_ = 0;
+    phase_ = Phase::lift;
+    move_ = plan_move(goal(), goal(), skill_.speed_mps);
+    move_.time_s = move_.duration_s;
+}
+
+// Up with it, stride by stride; no further when it resists, and anew when it was lost.
+void FindHand::keep_lifting(const HandSight& sight) {
+    const Percept& felt = seen_.before(kFeelShare * skill_.reaction_s);
+    const Percept& seen = seen_.before(skill_.reaction_s);
+    const bool lost = !seen.holding;
+    const bool heavy =
+        felt.force_n[static_cast<std::size_t>(tool_)] > kMostPull * exercise_.force_limit_n;
+    if (lost) {
+        jaw_[static_cast<std::size_t>(tool_)] = 0.0;
+        back_off(-room_m_ * sight.now.tool[static_cast<std::size_t>(tool_)].shaft);
+        return;
+    }
+    if (!arrived(move_) && !heavy) {
+        move_.time_s += kTick_s;
+        goal() = place_m(move_);
+        return;
+    }
+    if (stride_ < strides_ && !heavy)
+        next_stride(sight);
+    else
+        pause(skill_.pause_s + skill_.plan_s);
+}
+
+// At the tube until it counts; nearer if it is seen to be too far, anew when nothing comes of it.
+void FindHand::keep_pointing(const HandSight& sight) {
+    const Percept& seen = seen_.before(skill_.reaction_s);
+    const glm::dvec3 normal = sight.now.target[static_cast<std::size_t>(tube_)].normal;
+    const bool counted = (seen.found & (1U << tube_)) != 0 || seen.done;
+    const double patience_s =
+        mistaken_ ? kNotice_s : exercise_.hold_s + skill_.reaction_s + kGiveUp_s;
+    if (counted || (exercise_.lift && !seen.holding) || phase_ticks_ * kTick_s > patience_s) {
+        back_off(kHover_m * normal);
+        return;
+    }
+    const double off_m =
+        glm::distance(sight.now.tool[static_cast<std::size_t>(tool_)].tip_m,
+                      sight.now.target[static_cast<std::size_t>(tube_)].position_m + offset_m_);
+    if (off_m > kGoodShare * exercise_.radius_m && corrections_ < kMaxCorrections &&
+        phase_ticks_ > ticks(skill_.reaction_s)) {
+        phase_ = Phase::look;
+        wait_ticks_ = ticks(skill_.pause_s);
+    }
+}
+
+HandGoals FindHand::tick(const HandSight& sight) {
+    seen_.push(percept_of(sight));
+    ++phase_ticks_;
+    switch (phase_) {
+    case Phase::wait:
+        if (--wait_ticks_ <= 0)
+            decide(sight);
+        break;
+    case Phase::travel:
+    case Phase::leave:
+        travel(sight);
+        break;
+    case Phase::look:
+        if (--wait_ticks_ <= 0)
+            look(sight);
+        break;
+    case Phase::descend:
+        descend(sight);
+        break;
+    case Phase::close:
+        close_jaws();
+        break;
+    case Phase::lift:
+        keep_lifting(sight);
+        break;
+    case Phase::point:
+        keep_pointing(sight);
+        break;
+    case Phase::finished:
+        break;
+    }
+    HandGoals goals;
+    for (std::size_t t = 0; t < kTools; ++t)
+        goals.tip_m[t] = goal_m_[t] + next_tremor_m(tremor_[t], skill_.tremor_m);
+    goals.jaw = jaw_;
+    return goals;
+}
+
+} // namespace tasks

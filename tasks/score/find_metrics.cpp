@@ -1,0 +1,34 @@
+#include "tasks/score/find_metrics.h"
+
+#include "tasks/score/definition.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace tasks {
+
+std::vector<Metric> find_metrics(const Progress& progress, const Exercise& exercise,
+                                 bool forces_on) {
+    std::vector<Metric> list;
+    if (exercise.kind != ExerciseKind::find_tubes)
+        return list;
+    const auto add = [&](const char* id, double value) {
+        const MetricDefinition& definition = *definition_of(id);
+        list.push_back({.id = id,
+                        .version = definition.version,
+                        .value = value,
+                        .unit = std::string(definition.unit),
+                        .lower_is_better = definition.better == Better::less,
+                        .felt = forces_on || !definition.of_force,
+                        .first_tick = std::max<std::int64_t>(progress.first_move_tick, 0),
+                        .last_tick = progress.last_tick});
+    };
+    add("tubes_found", std::popcount(found_tubes(progress)));
+    if (!exercise.lift)
+        return list;
+    add("retraction_force", progress.lifted_sum_n / std::max(1, progress.lifted_ticks));
+    add("retraction_force_peak", progress.lifted_peak_n);
+    return list;
+}
+
+} // namespace tasks
