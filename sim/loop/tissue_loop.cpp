@@ -85,6 +85,15 @@ void advance_bodies(TissueRig& rig, const haptics::ContactSolution& solution) no
     }
 }
 
+double peak_stress_pa(const TissueRig& rig) noexcept {
+    double peak = 0.0;
+    for (const Body& body : rig.bodies) {
+        if (body.soft && !body.soft->resting)
+            peak = std::max(peak, body.soft->system.peak_von_mises_pa);
+    }
+    return peak;
+}
+
 // Depth under a tip that the mesh cannot show, and how far around the tip it reaches. Held skin
 // is drawn after the tip, wherever that is.
 struct Dimple {
@@ -176,6 +185,7 @@ StepOutcome tissue_step(TissueRig& rig, const ToolsNow& tools, TissueAnswer& ans
     wake_touched(rig, solution);
     apply_forces(rig, problem, solution);
     advance_bodies(rig, solution);
+    outcome.peak_stress_pa = peak_stress_pa(rig);
     slide_contacts(rig, solution);
 
     answer.local.step = outcome.trace.step;

@@ -59,6 +59,8 @@ struct StepOutcome {
     tasks::StepTrace trace;
     double linear_residual = 0.0; // worst body
     double contact_residual_m = 0.0;
+    double peak_stress_pa = 0.0; // von Mises, over the soft bodies that are not resting; where
+                                 // nothing moved relinearise_m, that of the last linearisation
     int inverted = 0;
     bool warped = false; // a body fell back to the warped tangent
 };

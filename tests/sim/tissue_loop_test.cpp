@@ -3,7 +3,9 @@
 #include "sim/loop/tissue_loop.h"
 
 #include "sim/session/scene.h"
+#include "tissue/solver/stress.h"
 
+#include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -94,6 +96,28 @@ TEST_CASE("tissue loop: a pressed tool is pushed out along the normal, deeper me
     const double half_space_n = sneddon_force_n(8e-3, bench.rig.bodies[0].material);
     CHECK(last < half_space_n);
     CHECK(last > 0.1 * half_space_n);
+}
+
+TEST_CASE("tissue loop: the peak stress is the pressed organ's, none of what rests") {
+    Bench bench;
+    CHECK(bench.step().peak_stress_pa == 0.0);
+    bench.put(0, 5e-3);
+    sim::StepOutcome outcome;
+    for (int i = 0; i < 60; ++i)
+        outcome = bench.step();
+    const sim::SoftBody& liver = *bench.rig.bodies[0].soft;
+    std::vector<double> stress(liver.model.mesh.tets.size());
+    tissue::von_mises_pa(liver.model, liver.state.position_m, stress);
+    const double peak_pa = *std::max_element(stress.begin(), stress.end());
+    CHECK(peak_pa > 0.01 * liver.model.material.young_pa);
+    // a linearisation may be 20 um old: 0.2 % of strain
+    CHECK(std::abs(outcome.peak_stress_pa - peak_pa) < 2e-3 * liver.model.material.young_pa);
+
+    bench.tools.tip[0].centre_m = {0.0, 0.0, 1.0};
+    for (int i = 0; i < 2000 && !liver.resting; ++i)
+        outcome = bench.step();
+    REQUIRE(liver.resting);
+    CHECK(outcome.peak_stress_pa == 0.0);
 }
 
 TEST_CASE("tissue loop: after release the organ comes back to rest exactly where it was") {

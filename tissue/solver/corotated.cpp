@@ -4,6 +4,7 @@
 #include "tissue/solver/corotated.h"
 
 #include "tissue/solver/corotated_element.h"
+#include "tissue/solver/stress.h"
 
 #include <algorithm>
 #include <cmath>
@@ -131,7 +132,7 @@ void assemble_bed(const CorotatedModel& model, const CorotatedState& state,
     }
 }
 
-// f_int - f_ext and K.
+// f_int - f_ext, K, and the peak of the stress on the way.
 void assemble(const CorotatedModel& model, const CorotatedState& state, bool exact,
               CorotatedSystem& system) noexcept {
     std::fill(system.stiffness.begin(), system.stiffness.end(), 0.0);
@@ -143,6 +144,7 @@ void assemble(const CorotatedModel& model, const CorotatedState& state, bool exa
             f[model.dof[i] + k] = -model.mass_kg[i] * model.gravity_mps2[k];
     }
     system.inverted = 0;
+    double peak2 = 0.0;
     for (std::size_t e = 0; e < model.mesh.tets.size(); ++e) {
         const ElementShape shape = element_shape(model, e, state.position_m);
         system.inverted += shape.det <= 0.0;
@@ -152,6 +154,8 @@ void assemble(const CorotatedModel& model, const CorotatedState& state, bool exa
         const std::array<dvec3, 4> g{-(g1 + g2 + g3), g1, g2, g3};
 
         const dmat3 stress_nm = element_stress_nm(model, e, shape);
+        const double volume2 = model.volume_m3[e] * model.volume_m3[e];
+        peak2 = std::max(peak2, von_mises_squared(stress_nm) / volume2); // not a number: not kept
         for (int a = 0; a < 4; ++a) {
             const std::int32_t dof = model.dof[model.mesh.tets[e][a]];
             if (dof < 0)
@@ -162,6 +166,7 @@ void assemble(const CorotatedModel& model, const CorotatedState& state, bool exa
         }
         add_tangent(model, e, element_tangent(model, e, shape, exact), g, system.stiffness.data());
     }
+    system.peak_von_mises_pa = std::sqrt(peak2);
     assemble_bed(model, state, system);
 }
 

@@ -54,6 +54,7 @@ struct CorotatedSystem {
     bool exact_tangent = true;      // false: fell back to the warped stiffness
     bool factored = false;          // false: state not finite, or statics of a loose body
     int inverted = 0;               // tets with det F <= 0
+    double peak_von_mises_pa = 0.0; // over the tets, see stress.h; follow_tangent() leaves it
     std::vector<double> internal_n; // f_int - f_ext on the unknowns
     std::vector<double> stiffness;  // K on the pattern
     std::vector<double> matrix;     // A on the pattern
