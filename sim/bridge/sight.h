@@ -5,11 +5,12 @@
 
 #include "haptics/collision/box_tree.h"
 #include "sim/bridge/body.h"
+#include "tasks/exercise/observation.h"
 
 namespace sim {
 
 /// To the centre, and to six places on a circle of 0.8 of the marker's radius.
-inline constexpr int kSightRays = 7;
+using tasks::kSightRays;
 
 /// A flat disc on a skin, with the outward unit normal there.
 struct Marker {

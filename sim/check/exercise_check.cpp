@@ -3,9 +3,11 @@
 #include "tasks/exercise/exercise.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <utility>
 
 namespace sim {
 namespace {
@@ -27,6 +29,8 @@ class Checker {
     ExerciseCheck run() {
         ExerciseCheck out;
         out.id = exercise_.id;
+        if (exercise_.lift)
+            check_lift(root_.table("lift"));
         for (std::size_t t = 0; t < exercise_.target.size(); ++t)
             out.target.push_back(check(t, out));
         out.finding = std::move(finding_);
@@ -63,9 +67,79 @@ class Checker {
         out.snap_m = glm::distance(target.at_m, place.place_m);
         check_neighbours(out, before, tables_[t]);
         check_reach(place, out, tables_[t]);
-        check_sight(place, tables_[t]);
-        check_band(place, out, tables_[t]);
+        if (exercise_.kind == tasks::ExerciseKind::find_tubes) {
+            check_hiding(place, tables_[t]);
+        } else {
+            check_sight(place, tables_[t]);
+            check_band(place, out, tables_[t]);
+        }
         return out;
+    }
+
+    // What is taken hold of: on a soft organ that something holds, within reach there and where it
+    // is brought to.
+    void check_lift(const TomlTable& table) {
+        const tasks::Lift& lift = *exercise_.lift;
+        const auto snapped = snap_target(scene_, bodies_, {lift.at_m, lift.organ});
+        if (!snapped) {
+            find_no_skin({"lift", lift.role, lift.at_m, lift.organ}, table);
+            return;
+        }
+        lifted_ = snapped->body;
+        const Body& body = bodies_[static_cast<std::size_t>(lifted_)];
+        if (!body.soft || !is_held(*body.organ, body.material)) {
+            find("not_soft", table, "at_mm",
+                 fmt::format("a place on a soft organ that something holds; \"{}\" is not",
+                             name(lifted_)));
+        }
+        TargetCheck there;
+        there.role = lift.role;
+        check_insertion(lift.to_m, there, table, "to_mm");
+        const dvec3 normal = normal_on(body, snapped->at);
+        check_reach(
+            {static_cast<std::size_t>(lifted_), snapped->at, place_on(body, snapped->at), normal},
+            there, table);
+    }
+
+    // A tube has to be hidden at rest, and seen once what hides it is out of the way, from where
+    // an endoscope that looks at it makes its mark large enough.
+    void check_hiding(const Place& place, const TomlTable& table) {
+        const Scene& scene = scene_.scene;
+        if (!scene.scope) {
+            if (std::exchange(no_scope_said_, true))
+                return;
+            find("no_scope", root_, "kind",
+                 fmt::format("a kind for a fixed picture; for this one scene \"{}\" needs a table "
+                             "[scope]",
+                             scene.id));
+            return;
+        }
+        const double distance_m =
+            exercise_.mark_radius_m /
+            (exercise_.least_share * std::tan(0.5 * scene.view.field_of_view_rad));
+        const dvec3 eye_m = haptics::aim_at(scene.scope->optics, place.place_m, distance_m,
+                                            scene.scope->start.tip_m, 0.0)
+                                .tip_m;
+        if (glm::distance(eye_m, place.place_m) > distance_m * (1.0 + 1e-6)) {
+            find(
+                "too_far", table, "at_mm",
+                fmt::format("a place that the endoscope comes near enough to: {:.0f} mm for a mark "
+                            "of least_share",
+                            1e3 * distance_m));
+            return;
+        }
+        const Obstacle hides = sight_obstacle(solids_, eye_m, place.place_m, place.normal, lifted_);
+        if (hides.body >= 0) {
+            find("hidden", table, "at_mm",
+                 fmt::format("a place that the endoscope sees once \"{}\" is lifted; \"{}\" hides "
+                             "it at {}",
+                             lifted_ < 0 ? "nothing" : name(lifted_), name(hides.body),
+                             mm(hides.place_m)));
+        } else if (lifted_ >= 0 &&
+                   sight_obstacle(solids_, eye_m, place.place_m, place.normal).body < 0) {
+            find("not_hidden", table, "at_mm",
+                 fmt::format("a place that \"{}\" hides until it is lifted", name(lifted_)));
+        }
     }
 
     void find_no_skin(const tasks::ExerciseTarget& target, const TomlTable& table) {
@@ -109,22 +183,31 @@ class Checker {
         }
     }
 
+    bool check_insertion(const dvec3& tip_m, TargetCheck& out, const TomlTable& table,
+                         const char* key) {
+        const haptics::Trocar& trocar =
+            scene_.scene.tool[static_cast<std::size_t>(out.role)].trocar;
+        out.insertion_m = glm::distance(tip_m, trocar.fulcrum_m);
+        const double least_m = trocar.min_insertion_m;
+        const double most_m = trocar.shaft_m - trocar.min_outside_m;
+        if (out.insertion_m >= least_m && out.insertion_m <= most_m)
+            return true;
+        find("out_of_reach", table, key,
+             fmt::format("a place that the {} tool reaches, {:.0f} to {:.0f} mm from its fulcrum; "
+                         "here its tip would be {:.0f} mm from it",
+                         tasks::role_name(out.role), 1e3 * least_m, 1e3 * most_m,
+                         1e3 * out.insertion_m));
+        return false;
+    }
+
     void check_reach(const Place& place, TargetCheck& out, const TomlTable& table) {
         const SceneTool& tool = scene_.scene.tool[static_cast<std::size_t>(out.role)];
         const dvec3 tip_m = place.place_m + tool.tip_radius_m * place.normal;
-        out.insertion_m = glm::distance(tip_m, tool.trocar.fulcrum_m);
-        const double least_m = tool.trocar.min_insertion_m;
-        const double most_m = tool.trocar.shaft_m - tool.trocar.min_outside_m;
-        const std::string role(tasks::role_name(out.role));
-        if (out.insertion_m < least_m || out.insertion_m > most_m) {
-            find("out_of_reach", table, "at_mm",
-                 fmt::format("a place that the {} tool reaches, {:.0f} to {:.0f} mm from its "
-                             "fulcrum; here its tip would be {:.0f} mm from it",
-                             role, 1e3 * least_m, 1e3 * most_m, 1e3 * out.insertion_m));
+        if (!check_insertion(tip_m, out, table, "at_mm"))
             return;
-        }
+        const std::string role(tasks::role_name(out.role));
         const Obstacle in_way =
-            shaft_obstacle(solids_, tool.trocar, tip_m, static_cast<int>(place.body));
+            shaft_obstacle(solids_, tool.trocar, tip_m, static_cast<int>(place.body), lifted_);
         if (in_way.body >= 0) {
             find(
                 "shaft_blocked", table, "at_mm",
@@ -216,6 +299,8 @@ class Checker {
     std::vector<TomlTable> tables_;
     std::vector<std::unique_ptr<RestFeel>> feel_; // beside bodies_, made when asked
     std::vector<Finding> finding_;
+    int lifted_ = -1; // body that is out of the way while tubes are looked for
+    bool no_scope_said_ = false;
 };
 
 } // namespace

@@ -134,13 +134,15 @@ Overlap overlap_of(const Solid& a, const Solid& b) {
 }
 
 Obstacle shaft_obstacle(std::span<const Solid> solids, const haptics::Trocar& trocar,
-                        const dvec3& tip_m, int touched) {
+                        const dvec3& tip_m, int touched, int lifted) {
     const dvec3 way = tip_m - trocar.fulcrum_m;
     const double length_m = glm::length(way);
     if (length_m <= trocar.min_insertion_m)
         return {};
     const dvec3 from_m = trocar.fulcrum_m + way * (trocar.min_insertion_m / length_m);
     for (std::size_t b = 0; b < solids.size(); ++b) {
+        if (static_cast<int>(b) == lifted)
+            continue;
         if (static_cast<int>(b) == touched) {
             const auto hits = tissue::line_hits(solids[b].skin, from_m, way / length_m, 0.0,
                                                 length_m - trocar.min_insertion_m);
@@ -154,11 +156,13 @@ Obstacle shaft_obstacle(std::span<const Solid> solids, const haptics::Trocar& tr
 }
 
 Obstacle sight_obstacle(std::span<const Solid> solids, const dvec3& eye_m, const dvec3& place_m,
-                        const dvec3& normal) {
+                        const dvec3& normal, int lifted) {
     constexpr double kOffSkin_m = 0.5e-3; // a marker stands out by this much
     const dvec3 seen_m = place_m + kOffSkin_m * normal;
     const double length_m = glm::distance(eye_m, seen_m);
     for (std::size_t b = 0; b < solids.size(); ++b) {
+        if (static_cast<int>(b) == lifted)
+            continue;
         const auto hits =
             tissue::line_hits(solids[b].skin, eye_m, (seen_m - eye_m) / length_m, 0.0, length_m);
         if (!hits.empty())

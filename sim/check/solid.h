@@ -37,16 +37,18 @@ inline constexpr double kShaftRadius_m = 2.5e-3;
 
 /// What a shaft meets on its way from the port to a tip whose centre is at `tip_m`: its axis and
 /// 2.5 mm around it against other bodies, the axis alone against the body `touched` (-1: none),
-/// which it may lie along. The first 20 mm are in the port and free.
+/// which it may lie along. The first 20 mm are in the port and free. Body `lifted` is out of the
+/// way.
 struct Obstacle {
     int body = -1; // -1: none
     glm::dvec3 place_m{0.0};
 };
 Obstacle shaft_obstacle(std::span<const Solid> solids, const haptics::Trocar& trocar,
-                        const glm::dvec3& tip_m, int touched);
+                        const glm::dvec3& tip_m, int touched, int lifted = -1);
 
-/// What hides a place on a skin, with outward normal `normal`, from the eye: any body, its own too.
+/// What hides a place on a skin, with outward normal `normal`, from the eye: any body, its own too,
+/// but one that is `lifted` out of the way.
 Obstacle sight_obstacle(std::span<const Solid> solids, const glm::dvec3& eye_m,
-                        const glm::dvec3& place_m, const glm::dvec3& normal);
+                        const glm::dvec3& place_m, const glm::dvec3& normal, int lifted = -1);
 
 } // namespace sim

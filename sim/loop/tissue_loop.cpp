@@ -194,11 +194,30 @@ StepOutcome tissue_step(TissueRig& rig, const ToolsNow& tools, TissueAnswer& ans
         make_local_models(rig, answer.local);
     answer.seen.targets = static_cast<int>(rig.targets.size());
     place_targets(rig, answer.seen.target_um);
+    see_targets(rig, tools.scope, answer.seen.clear_rays);
+    answer.seen.stress_pa = static_cast<std::int32_t>(std::lround(outcome.peak_stress_pa));
+    outcome.trace.clear_rays = answer.seen.clear_rays;
+    outcome.trace.stress_pa = answer.seen.stress_pa;
     outcome.trace.targets = answer.seen.targets;
     outcome.trace.target_um = answer.seen.target_um;
     outcome.trace.flags =
         static_cast<std::uint8_t>((outcome.warped ? 1 : 0) | (outcome.inverted > 0 ? 2 : 0));
     return outcome;
+}
+
+void see_targets(TissueRig& rig, const ScopeNow& scope, ClearRays& out) noexcept {
+    out.fill(0);
+    if (rig.sight)
+        refit(*rig.sight, rig.bodies);
+    for (std::size_t t = 0; t < rig.targets.size() && t < out.size(); ++t) {
+        const EmbeddedTarget& target = rig.targets[t];
+        const Body& body = rig.bodies[target.body];
+        const Marker marker{place_on(body, target.at), normal_on(body, target.at),
+                            rig.mark_radius_m};
+        out[t] = static_cast<std::uint8_t>(
+            rig.sight ? clear_rays(*rig.sight, rig.bodies, scope.port_m, scope.view.eye_m, marker)
+                      : kSightRays);
+    }
 }
 
 void place_targets(const TissueRig& rig, TargetPlaces& out) noexcept {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "sim/bridge/body.h"
+#include "sim/bridge/sight.h"
 #include "sim/exchange.h"
 
 namespace sim {
@@ -46,6 +47,8 @@ struct TissueRig {
     TissueConfig config;
     std::vector<Body> bodies;
     std::vector<EmbeddedTarget> targets;
+    std::optional<Sight> sight; // none: nobody asks what the endoscope sees
+    double mark_radius_m = 0.0; // of the targets' marks, for sight
     std::array<FemContact, kTools> contact{};
     std::array<haptics::ContactMemory, kTools> memory{};
     std::array<double, kTools> device_npm{800.0, 800.0, 800.0}; // 0.8 x 2b/T of each device
@@ -77,6 +80,9 @@ StepOutcome tissue_step(TissueRig& rig, const ToolsNow& tools, TissueAnswer& ans
 
 /// The surfaces for the picture, with the dimple under each tip that the mesh cannot resolve.
 void draw_surface(const TissueRig& rig, SurfaceNow& out);
+
+/// How much of each target's mark the endoscope sees; all of it if nobody asks.
+void see_targets(TissueRig& rig, const ScopeNow& scope, ClearRays& out) noexcept;
 
 /// Places of all targets now, with that dimple.
 void place_targets(const TissueRig& rig, TargetPlaces& out) noexcept;

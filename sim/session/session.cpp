@@ -74,6 +74,9 @@ std::unique_ptr<Session> build(const RunOptions& options, LoadedScene scene,
     if (check)
         refuse_impossible(*session, exercise_file);
     embed_targets(session->scene, wishes(session->exercise), session->tissue);
+    if (session->exercise.kind == tasks::ExerciseKind::find_tubes)
+        session->tissue.sight = make_sight(session->tissue.bodies);
+    session->tissue.mark_radius_m = session->exercise.mark_radius_m;
     session->rest_targets = rest_targets(session->tissue);
     session->haptics = make_haptics(session->scene.scene);
     session->haptics.coupling = options.coupling;
