@@ -58,7 +58,7 @@ void split(BoxTree& tree, std::span<const dvec3> centre, std::span<std::uint32_t
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
         const auto begin = order.begin() + first;
         const std::uint32_t left = count / 2;
-        // ties by number, so that the tree does not depend on the library
+        // ties by number, so that the halves do not depend on the library
         std::nth_element(begin, begin + left, begin + count, [&](std::uint32_t a, std::uint32_t b) {
             return centre[a][axis] != centre[b][axis] ? centre[a][axis] < centre[b][axis] : a < b;
         });

@@ -1,5 +1,8 @@
-// What the endoscope sees of a marker, on bodies made by hand. This program counts allocations.
+// What the endoscope sees of a marker, mostly on bodies made by hand. This program counts
+// allocations.
 #include "sim/bridge/sight.h"
+
+#include "sim/check/solid.h"
 
 #include <atomic>
 #include <cmath>
@@ -330,6 +333,32 @@ TEST_CASE("sight: taking bodies away never hides anything") {
         CHECK(seen(bodies) == sim::kSightRays);
     }
     CHECK(partly > 100);
+}
+
+TEST_CASE("sight: agrees with the scene's check, which has a ray and a tree of its own") {
+    const sim::LoadedScene scene = sim::load_scene("two_organs");
+    const std::vector<sim::Body> bodies = sim::make_bodies(scene, 0.01);
+    const std::vector<sim::Solid> solids = sim::make_solids(scene);
+    const sim::Sight sight = sim::make_sight(bodies);
+    const dvec3 eye_m = scene.scene.view.eye_m;
+    constexpr double kLike_m = 0.5e-3 / 0.15; // whose centre is lifted by as much as in the check
+    int all = 0, none = 0;
+    for (const sim::Body& body : bodies) {
+        for (std::size_t v = 0; v < body.skin_m.size(); v += 7) {
+            const sim::Marker marker{body.skin_m[v], body.skin_normal[v], kLike_m};
+            if (glm::dot(eye_m - marker.place_m, marker.normal) < 1e-3)
+                continue; // the check does not ask which way it faces
+            const int clear = sim::clear_rays(sight, bodies, eye_m, eye_m, marker);
+            const bool hidden =
+                sim::sight_obstacle(solids, eye_m, marker.place_m, marker.normal).body >= 0;
+            CHECK_FALSE((clear == sim::kSightRays && hidden));
+            CHECK_FALSE((clear == 0 && !hidden));
+            all += clear == sim::kSightRays;
+            none += clear == 0;
+        }
+    }
+    CHECK(all > 100);
+    CHECK(none > 10);
 }
 
 TEST_CASE("sight: a step allocates nothing") {
