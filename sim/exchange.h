@@ -67,6 +67,7 @@ struct TissueAnswer {
 struct ScopeNow {
     tasks::View view;
     glm::dvec3 port_m{0.0}; // where it comes in; the eye itself if the scene's picture is fixed
+    double camera_rad = 0.0, optic_rad = 0.0; // turns of camera head and optic
     double horizon_rad = 0.0;
     bool present = false; // false: the scene's picture is fixed
     bool faulted = false;

@@ -58,10 +58,10 @@ ScopeNow look_through(const ScopeInstrument& scope, const tasks::ScopeTrace& cou
     const glm::dvec3 handle_m =
         scope.origin_m +
         scope.metres_per_count * glm::dvec3{counts.counts[0], counts.counts[1], counts.counts[2]};
+    now.camera_rad = scope.scene.start.camera_rad + scope.rad_per_count * counts.camera_counts;
+    now.optic_rad = scope.scene.start.optic_rad + scope.rad_per_count * counts.optic_counts;
     const haptics::EndoscopePicture picture = haptics::picture_of(
-        optics, haptics::shaft_pose(optics.trocar, handle_m),
-        scope.scene.start.camera_rad + scope.rad_per_count * counts.camera_counts,
-        scope.scene.start.optic_rad + scope.rad_per_count * counts.optic_counts);
+        optics, haptics::shaft_pose(optics.trocar, handle_m), now.camera_rad, now.optic_rad);
     now.view.eye_m = picture.eye_m;
     now.view.forward = picture.forward;
     now.view.up = picture.up;
