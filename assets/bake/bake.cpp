@@ -105,12 +105,50 @@ Surfaces box_surfaces(const Recipe& recipe, const BoxShape& shape, PhaseClock& c
     return s;
 }
 
+Surface scenery_surface(const Recipe& recipe) {
+    const double skin_m = kMm * recipe.skin_mm;
+    const auto* vault = std::get_if<VaultShape>(&recipe.shape);
+    return vault != nullptr ? vault_surface(*vault, skin_m)
+                            : ground_surface(std::get<GroundShape>(recipe.shape), skin_m);
+}
+
+// Without a boundary if the tetrahedra are made with the shape, not from it.
+Surfaces body_surfaces(const Recipe& recipe, PhaseClock& clock) {
+    if (const auto* lobed = std::get_if<LobedShape>(&recipe.shape)) {
+        return liver_surfaces(recipe, *lobed, clock);
+    }
+    if (const auto* box = std::get_if<BoxShape>(&recipe.shape)) {
+        return box_surfaces(recipe, *box, clock);
+    }
+    clock.begin("skin");
+    const double skin_m = kMm * recipe.skin_mm;
+    const auto* sheet = std::get_if<SheetShape>(&recipe.shape);
+    Surfaces s{.skin = sheet != nullptr ? sheet_surface(*sheet, skin_m)
+                                        : tube_surface(std::get<TubeShape>(recipe.shape), skin_m),
+               .boundary = {}};
+    require_good(s.skin, "the skin");
+    return s;
+}
+
+std::optional<tissue::TetMesh> regular_mesh(const Recipe& recipe) {
+    if (const auto* box = std::get_if<BoxShape>(&recipe.shape); box != nullptr && box->cells) {
+        return tissue::box_mesh(kMm * box->size_mm, *box->cells);
+    }
+    if (const auto* sheet = std::get_if<SheetShape>(&recipe.shape)) {
+        return sheet_mesh(*sheet);
+    }
+    if (const auto* tube = std::get_if<TubeShape>(&recipe.shape)) {
+        return tube_mesh(*tube, kMm * recipe.edge_mm);
+    }
+    return {};
+}
+
 tissue::TetMesh make_mesh(const Recipe& recipe, const Surface& boundary, PhaseClock& clock,
                           const BakeOptions& options, BakeReport& report) {
     clock.begin("tetrahedra");
-    const auto* box = std::get_if<BoxShape>(&recipe.shape);
-    if (box != nullptr && box->cells) {
-        return tissue::box_mesh(kMm * box->size_mm, *box->cells);
+    if (auto regular = regular_mesh(recipe)) {
+        tissue::check_mesh(*regular);
+        return std::move(*regular);
     }
     TetAnswer answer =
         tetrahedralise(boundary, {.edge_m = kMm * recipe.edge_mm,
@@ -169,9 +207,9 @@ Baked bake(const Recipe& recipe, const BakeOptions& options) {
     organ.tip_radius_max_m = kMm * recipe.tip_radius_max_mm;
     organ.recipe_hash = recipe_hash(recipe);
 
-    if (const auto* vault = std::get_if<VaultShape>(&recipe.shape)) {
+    if (is_rigid(recipe.kind)) {
         clock.begin("skin");
-        const Surface skin = vault_surface(*vault, kMm * recipe.skin_mm);
+        const Surface skin = scenery_surface(recipe);
         organ.rigid = true;
         organ.surface.rest_m = skin.point_m;
         organ.surface.triangles = skin.triangles;
@@ -180,10 +218,7 @@ Baked bake(const Recipe& recipe, const BakeOptions& options) {
         return baked;
     }
 
-    const auto* lobed = std::get_if<LobedShape>(&recipe.shape);
-    const Surfaces surfaces = lobed != nullptr
-                                  ? liver_surfaces(recipe, *lobed, clock)
-                                  : box_surfaces(recipe, std::get<BoxShape>(recipe.shape), clock);
+    const Surfaces surfaces = body_surfaces(recipe, clock);
     organ.mesh = make_mesh(recipe, surfaces.boundary, clock, options, baked.report);
     make_anchors(recipe, organ);
     baked.boundary = {organ.mesh.rest_m, tissue::boundary_triangles(organ.mesh)};

@@ -4,6 +4,9 @@
 
 #include "assets/bake/fine_spot.h"
 #include "assets/bake/shape.h"
+#include "assets/bake/shape_ground.h"
+#include "assets/bake/shape_sheet.h"
+#include "assets/bake/shape_tube.h"
 #include "tissue/material/elastic.h"
 
 #include <optional>
@@ -35,7 +38,12 @@ struct BoxShape {
     bool skin_on_top_only = true;
 };
 
-enum class Kind { liver, wall, box };
+enum class Kind { liver, wall, box, ground, sheet, tube };
+/// Scenery: a skin without tetrahedra.
+constexpr bool is_rigid(Kind kind) {
+    return kind == Kind::wall || kind == Kind::ground;
+}
+using AnyShape = std::variant<LobedShape, VaultShape, BoxShape, GroundShape, SheetShape, TubeShape>;
 
 struct Recipe {
     std::string name;
@@ -45,7 +53,7 @@ struct Recipe {
     double tip_radius_max_mm = 3.0;
     double quality_ratio = 1.2;         // TetGen: circumradius over shortest edge
     double quality_dihedral_deg = 15.0; // TetGen: smallest dihedral angle
-    std::variant<LobedShape, VaultShape, BoxShape> shape;
+    AnyShape shape;
     std::vector<AnchorSphere> anchor_spheres;
     std::vector<AnchorBox> anchor_boxes;
     double hold_length_mm = 0.0; // L of the elastic bed in the anchors; 0: their nodes are fixed

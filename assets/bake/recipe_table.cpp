@@ -2,9 +2,12 @@
 
 #include "assets/bake/recipe.h"
 
+#include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <set>
+#include <span>
 #include <sstream>
 #include <toml.hpp>
 
@@ -39,6 +42,14 @@ bool as_number(const toml::value& value, double low, double high, double& out) {
         return false;
     }
     return out >= low && out <= high; // false for nan
+}
+
+bool as_numbers(const toml::value& value, double low, double high, std::span<double> out) {
+    if (!value.is_array() || value.as_array().size() != out.size()) {
+        return false;
+    }
+    return std::equal(out.begin(), out.end(), value.as_array().begin(),
+                      [&](double& x, const toml::value& v) { return as_number(v, low, high, x); });
 }
 
 } // namespace
@@ -100,17 +111,45 @@ glm::dvec3 Table::vector(const char* key, double low, double high,
     if (!has(key)) {
         return usual ? *usual : (missing(key, accepted), glm::dvec3{0.0});
     }
-    const toml::value& value = state_->value.at(key);
-    if (!value.is_array() || value.as_array().size() != 3) {
+    std::array<double, 3> out{};
+    if (!as_numbers(state_->value.at(key), low, high, out)) {
         refuse(key, accepted);
     }
-    glm::dvec3 out{0.0};
-    for (int d = 0; d < 3; ++d) {
-        if (!as_number(value.as_array()[static_cast<std::size_t>(d)], low, high, out[d])) {
+    return {out[0], out[1], out[2]};
+}
+
+glm::dvec2 Table::pair(const char* key, double low, double high) const {
+    const std::string accepted = range("[x, y], two numbers", low, high);
+    if (!has(key)) {
+        missing(key, accepted);
+    }
+    std::array<double, 2> out{};
+    if (!as_numbers(state_->value.at(key), low, high, out)) {
+        refuse(key, accepted);
+    }
+    return {out[0], out[1]};
+}
+
+std::vector<glm::dvec3> Table::vectors(const char* key, std::size_t fewest, double low,
+                                       double high) const {
+    const std::string accepted = fmt::format(
+        "[[x, y, z], ...], at least {} times three numbers from {} to {}", fewest, low, high);
+    if (!has(key)) {
+        missing(key, accepted);
+    }
+    const toml::value& value = state_->value.at(key);
+    if (!value.is_array() || value.as_array().size() < fewest) {
+        refuse(key, accepted);
+    }
+    std::vector<glm::dvec3> list;
+    for (const toml::value& item : value.as_array()) {
+        std::array<double, 3> out{};
+        if (!as_numbers(item, low, high, out)) {
             refuse(key, accepted);
         }
+        list.emplace_back(out[0], out[1], out[2]);
     }
-    return out;
+    return list;
 }
 
 std::string Table::text(const char* key) const {

@@ -3,6 +3,7 @@
 // by recipe.cpp only; keys that were never asked for are errors too.
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <initializer_list>
 #include <memory>
@@ -24,6 +25,10 @@ class Table {
                                     long long usual) const;
     [[nodiscard]] glm::dvec3 vector(const char* key, double low, double high,
                                     std::optional<glm::dvec3> usual = {}) const;
+    [[nodiscard]] glm::dvec2 pair(const char* key, double low, double high) const;
+    // of at least `fewest`
+    [[nodiscard]] std::vector<glm::dvec3> vectors(const char* key, std::size_t fewest, double low,
+                                                  double high) const;
     [[nodiscard]] std::string text(const char* key) const;
     [[nodiscard]] std::string word(const char* key, std::initializer_list<const char*> accepted,
                                    std::optional<std::string> usual = {}) const;

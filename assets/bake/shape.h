@@ -9,8 +9,12 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 
 namespace bake {
+
+/// Turns about x, then y, then z.
+glm::dmat3 turn(const glm::dvec3& tilt_deg);
 
 struct Ellipsoid {
     glm::dvec3 centre_mm{0.0};

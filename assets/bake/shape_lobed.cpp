@@ -2,23 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/mat3x3.hpp>
 #include <numbers>
 
 namespace bake {
 namespace {
 
 constexpr double kMmPerM = 1e3;
-
-glm::dmat3 turn(const glm::dvec3& tilt_deg) {
-    const glm::dvec3 t = tilt_deg * (std::numbers::pi / 180.0);
-    const double cx = std::cos(t.x), sx = std::sin(t.x), cy = std::cos(t.y), sy = std::sin(t.y),
-                 cz = std::cos(t.z), sz = std::sin(t.z);
-    const glm::dmat3 rx{{1, 0, 0}, {0, cx, sx}, {0, -sx, cx}}; // columns
-    const glm::dmat3 ry{{cy, 0, -sy}, {0, 1, 0}, {sy, 0, cy}};
-    const glm::dmat3 rz{{cz, sz, 0}, {-sz, cz, 0}, {0, 0, 1}};
-    return rz * ry * rx;
-}
 
 /// First-order distance to an ellipsoid: exact on it, good near it.
 double ellipsoid_mm(const Ellipsoid& e, const glm::dmat3& to_local, const glm::dvec3& p_mm) {
@@ -58,6 +47,16 @@ std::vector<Part> parts(const std::vector<Ellipsoid>& ellipsoids) {
 }
 
 } // namespace
+
+glm::dmat3 turn(const glm::dvec3& tilt_deg) {
+    const glm::dvec3 t = tilt_deg * (std::numbers::pi / 180.0);
+    const double cx = std::cos(t.x), sx = std::sin(t.x), cy = std::cos(t.y), sy = std::sin(t.y),
+                 cz = std::cos(t.z), sz = std::sin(t.z);
+    const glm::dmat3 rx{{1, 0, 0}, {0, cx, sx}, {0, -sx, cx}}; // columns
+    const glm::dmat3 ry{{cy, 0, -sy}, {0, 1, 0}, {sy, 0, cy}};
+    const glm::dmat3 rz{{cz, sz, 0}, {-sz, cz, 0}, {0, 0, 1}};
+    return rz * ry * rx;
+}
 
 Field lobed_field(const LobedShape& shape) {
     return

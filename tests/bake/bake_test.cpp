@@ -1,5 +1,6 @@
 #include "assets/bake/bake.h"
 
+#include "tests/bake/recipes_for_tests.h"
 #include "tests/bake/shapes_for_tests.h"
 
 #include <algorithm>
@@ -11,23 +12,14 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
-#include <sstream>
 #include <sys/wait.h>
 
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string slurp(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
-
-std::string organ_text(const std::string& name) {
-    return slurp(fs::path(ORGAN_RECIPES) / (name + ".toml"));
-}
+using bake_tests::organ_text;
+using bake_tests::slurp;
 
 const bake::Baked& liver() {
     static const bake::Baked baked =
