@@ -65,6 +65,9 @@ void check_organs(const LoadedScene& scene, std::span<const Solid> solids,
         check_anchors(scene, i, tables[i], organ, out.finding);
         out.organ.push_back(organ);
         for (std::size_t j = 0; j < i; ++j) {
+            if (scene.scene.organ[i].runs_into == scene.scene.organ[j].name ||
+                scene.scene.organ[j].runs_into == scene.scene.organ[i].name)
+                continue;
             const Overlap overlap = overlap_of(solids[i], solids[j]);
             const double edge_m =
                 std::max(mean_edge_m(body.surface), mean_edge_m(scene.organ[j]->surface));

@@ -19,6 +19,7 @@ struct SceneOrgan {
     std::string file; // beside scene.toml
     tissue::Material material;
     std::vector<Anchor> anchor;           // if any, instead of what the organ was baked with
+    std::string runs_into;                // an organ that its ends may lie in, as vessels do
     double hold_length_m = 10e-3;         // L of tissue/mesh/elastic_bed.h
     view::Look look = view::Look::tissue; // of the picture only
 };

@@ -58,7 +58,8 @@ view::Look parse_look(const TomlTable& t, const std::string& name) {
 
 SceneOrgan parse_organ(const TomlTable& t) {
     t.accept_only({"name", "file", "young_kpa", "poisson", "density_kgpm3", "damping_mass_1ps",
-                   "damping_stiffness_ms", "friction", "anchor", "hold_length_mm", "look"});
+                   "damping_stiffness_ms", "friction", "anchor", "hold_length_mm", "look",
+                   "runs_into"});
     const tissue::Material usual;
     SceneOrgan organ;
     organ.name = t.text("name");
@@ -75,6 +76,7 @@ SceneOrgan parse_organ(const TomlTable& t) {
     m.friction = t.number("friction", {0.0, 2.0}, usual.friction);
     organ.hold_length_m = 1e-3 * t.number("hold_length_mm", {0.1, 1000.0}, 10.0);
     organ.look = parse_look(t, organ.name);
+    organ.runs_into = t.text("runs_into", "");
     return organ;
 }
 
@@ -159,11 +161,14 @@ void check_names(const std::vector<TomlTable>& tables, const TomlTable& t, const
         if (!other.empty() && other != name)
             others += (others.empty() ? "\"" : ", \"") + other + "\"";
     }
-    for (const TomlTable& a : t.tables("anchor")) {
-        if (a.has("touching") && others.find("\"" + a.text("touching") + "\"") == std::string::npos)
-            a.refuse("touching", "another organ of the scene" +
-                                     (others.empty() ? "; there is none" : ": " + others));
-    }
+    const auto check_other = [&](const TomlTable& table, const char* key) {
+        if (table.has(key) && others.find("\"" + table.text(key) + "\"") == std::string::npos)
+            table.refuse(key, "another organ of the scene" +
+                                  (others.empty() ? "; there is none" : ": " + others));
+    };
+    check_other(t, "runs_into");
+    for (const TomlTable& a : t.tables("anchor"))
+        check_other(a, "touching");
 }
 
 void parse_tools(const TomlTable& root, Scene& scene, Mistakes* mistakes) {

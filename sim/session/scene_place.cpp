@@ -95,6 +95,20 @@ fs::path find_exercise(const ScenePlace& place, const std::string& exercise) {
     return find_asset("exercises", exercise);
 }
 
+std::string scene_for(const std::string& exercise) {
+    const std::string usual = "basic", file = exercise + ".toml";
+    if (!is_name(exercise) || fs::is_regular_file(assets_dir() / "exercises" / file))
+        return usual;
+    std::vector<std::string> scenes;
+    std::error_code absent;
+    for (const auto& entry : fs::directory_iterator(assets_dir() / "scenes", absent)) {
+        if (fs::is_regular_file(entry.path() / "exercises" / file))
+            scenes.push_back(entry.path().filename().string());
+    }
+    const auto first = std::min_element(scenes.begin(), scenes.end());
+    return first == scenes.end() ? usual : *first;
+}
+
 std::vector<std::string> exercise_names(const ScenePlace& place) {
     std::vector<std::string> names = names_in(place.folder / "exercises");
     if (names.empty() && place.shipped)

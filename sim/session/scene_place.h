@@ -35,6 +35,10 @@ std::filesystem::path organ_file(const ScenePlace& place, const std::string& fil
 /// it is a file. Throws std::runtime_error naming what was tried.
 std::filesystem::path find_exercise(const ScenePlace& place, const std::string& exercise);
 
+/// The scene that an exercise is for when nobody names one: "basic" for those of assets/exercises,
+/// else the first of assets/scenes, by name, that has it; "basic" too if none does.
+std::string scene_for(const std::string& exercise);
+
 /// Names for a menu, sorted: the scene's own exercises; if it has none and is shipped, those of
 /// assets/exercises.
 std::vector<std::string> exercise_names(const ScenePlace& place);

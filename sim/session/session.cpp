@@ -140,7 +140,8 @@ void give_hands(Session& session) {
 } // namespace
 
 std::unique_ptr<Session> make_session(const RunOptions& options, bool with_hands) {
-    LoadedScene scene = load_scene(options.scene);
+    LoadedScene scene =
+        load_scene(options.scene.empty() ? scene_for(options.exercise) : options.scene);
     const auto path = find_exercise(scene.place, options.exercise);
     auto session = build(options, std::move(scene), read_text(path), path.string(), true);
     if (with_hands) {

@@ -14,7 +14,7 @@ namespace sim {
 
 struct RunOptions {
     std::string exercise = "touch-points"; // name or path of an exercise file
-    std::string scene = "basic";           // name, directory or path of a scene
+    std::string scene;                     // name, directory or path; empty: the exercise's own
     std::string hands = "expert";          // skill name or path of a script
     Coupling coupling = Coupling::anchored;
     int fem_hz = 100;
