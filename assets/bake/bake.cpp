@@ -2,6 +2,7 @@
 
 #include "assets/bake/anchors.h"
 #include "assets/bake/fit.h"
+#include "assets/bake/local_terms.h"
 #include "assets/bake/nearest.h"
 #include "assets/bake/remesh.h"
 #include "tissue/response/mesh_term.h"
@@ -235,6 +236,9 @@ Baked bake(const Recipe& recipe, const BakeOptions& options) {
     clock.begin("mesh terms");
     tissue::make_mesh_terms(organ.mesh, organ.material.poisson, organ.anchored, footprint,
                             organ.surface, organ.bed, options.mesh_term_progress);
+    if (is_slender(recipe.kind)) {
+        keep_terms_local(organ.material.poisson, organ.surface);
+    }
     clock.end();
     return baked;
 }

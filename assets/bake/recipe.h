@@ -43,6 +43,10 @@ enum class Kind { liver, wall, box, ground, sheet, tube };
 constexpr bool is_rigid(Kind kind) {
     return kind == Kind::wall || kind == Kind::ground;
 }
+/// Bends as a whole when it is pressed.
+constexpr bool is_slender(Kind kind) {
+    return kind == Kind::sheet || kind == Kind::tube;
+}
 using AnyShape = std::variant<LobedShape, VaultShape, BoxShape, GroundShape, SheetShape, TubeShape>;
 
 struct Recipe {

@@ -61,7 +61,8 @@ double depth_mm(const bake::GroundShape& ground, const glm::dvec3& p) {
 struct Opened {
     tissue::BakedOrgan organ;
     std::vector<glm::dvec3> position_m;
-    std::vector<double> pull_n; // on the way
+    std::vector<double> pull_n;  // on the way
+    std::size_t skin_vertex = 0; // in the middle of the jaws
     bool converged = true;
 };
 Opened open_flap(const Scene& scene) {
@@ -98,6 +99,12 @@ Opened open_flap(const Scene& scene) {
         opened.pull_n.push_back(glm::length(sum_n));
     }
     opened.position_m = state.position_m;
+    const auto& skin_m = opened.organ.surface.rest_m;
+    const auto nearer = [&](const glm::dvec3& a, const glm::dvec3& b) {
+        return glm::length(a - middle_m) < glm::length(b - middle_m);
+    };
+    opened.skin_vertex = static_cast<std::size_t>(
+        std::min_element(skin_m.begin(), skin_m.end(), nearer) - skin_m.begin());
     return opened;
 }
 
@@ -217,6 +224,20 @@ TEST_CASE("find-tubes: the flap is held open by 0.1 to 0.6 N") {
         CHECK(opened.converged);
         CHECK(opened.pull_n.back() > 0.1);
         CHECK(*std::max_element(opened.pull_n.begin(), opened.pull_n.end()) < 0.6);
+    }
+}
+
+TEST_CASE("find-tubes: the flap follows the jaws to within a twentieth of their way") {
+    for (const Scene& scene : scenes()) {
+        CAPTURE(scene.flap);
+        const Opened opened = open_flap(scene);
+        const auto& skin = opened.organ.surface;
+        const double young_pa = opened.organ.material.young_pa;
+        // mesh terms are springs between jaws and skin
+        for (const double term_m :
+             {skin.mesh_term_n_m[opened.skin_vertex], skin.mesh_term_t_m[opened.skin_vertex]}) {
+            CHECK(term_m / young_pa * opened.pull_n.back() < std::hypot(60.0, 45.0) * 1e-3 / 20.0);
+        }
     }
 }
 

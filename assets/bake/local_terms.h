@@ -1,0 +1,17 @@
+// assets/bake/local_terms.h
+// Mesh terms of slender bodies. Linear tetrahedra bend a sheet of one layer five times too stiffly,
+// and the mesh term owes the whole difference, metres per newton. But terms act between tool and
+// skin: jaws that lift a flap would hold it on a long spring, and the flap would stay where it is.
+// What is no dimple under the kernel is left to the body, which is then as stiff as its mesh.
+// Called by bake.
+#pragma once
+
+#include "tissue/mesh/contact_surface.h"
+
+namespace bake {
+
+/// No mesh term above the compliance of a half-space under the same kernel. Call after
+/// make_mesh_terms.
+void keep_terms_local(double poisson, tissue::ContactSurface& surface);
+
+} // namespace bake
