@@ -1,7 +1,7 @@
 #include "haptics/contact/model_step.h"
 
+#include "haptics/contact/carried_point.h"
 #include "haptics/contact/grasp.h"
-#include "haptics/contact/surface_walk.h"
 
 #include <cmath>
 #include <utility>
@@ -35,6 +35,15 @@ struct DeformedPatch {
     }
     int neighbour(int triangle, int corner) const noexcept {
         return patch.triangle[triangle].neighbour[corner];
+    }
+    SurfacePlace operator()(const SurfacePoint& at) const noexcept { // for carry()
+        SurfacePlace out{.place_m = {}, .normal = glm::dvec3{0.0}};
+        for (int k = 0; k < 3; ++k) {
+            out.place_m += at.weight[k] * position(at.triangle, k);
+            out.normal += at.weight[k] * patch.vertex[patch.triangle[at.triangle].vertex[k]].normal;
+        }
+        out.normal = glm::normalize(out.normal);
+        return out;
     }
 };
 
@@ -142,7 +151,7 @@ bool place_tool(const RunningModel& model, const FreeMotion& free, int i, Surfac
     const double distance_m = glm::length(row.tip_m - row.surface_free_m);
     bool at_rim = false;
     for (int halved = 0; halved < 4; ++halved) {
-        const WalkResult walked = walk(surface, start, slip_m);
+        const WalkResult walked = carry(surface, surface, start, slip_m, row.tip_m);
         at = walked.point;
         at_rim = walked.at_rim;
         read_patch(patch, at, free, row, point);
@@ -238,7 +247,8 @@ StepResult step_model(RunningModel& model, double tick_s,
             continue;
         const ToolPatch& patch = model.answer->tool[i];
         const DeformedPatch surface{patch, model.q.data() + patch.first_mode};
-        const WalkResult walked = walk(surface, model.contact[i], solved.slip_m[i]);
+        const WalkResult walked =
+            carry(surface, surface, model.contact[i], solved.slip_m[i], tips[i].centre_m);
         model.contact[i] = walked.point;
         if (walked.at_rim && model.memory[i].grasped)
             release_grasp(model.memory[i]);

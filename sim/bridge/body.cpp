@@ -1,9 +1,10 @@
 #include "sim/bridge/body.h"
 
-#include "haptics/contact/surface_walk.h"
+#include "tissue/response/boundary_tree.h"
 #include "tissue/response/subgrid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -84,12 +85,10 @@ Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Ma
     const std::size_t vertices = skin.rest_m.size();
     body.skin_m = skin.rest_m;
     body.skin_normal.resize(vertices);
-    body.some_triangle.assign(vertices, 0);
-    for (std::size_t t = skin.triangles.size(); t-- > 0;) {
-        for (const std::uint32_t v : skin.triangles[t]) {
-            body.some_triangle[v] = static_cast<std::uint32_t>(t);
-        }
-    }
+    for (const tissue::Triangle& t : skin.triangles)
+        for (int k = 0; k < 3; ++k)
+            body.longest_edge_m = std::max(
+                body.longest_edge_m, glm::distance(skin.rest_m[t[k]], skin.rest_m[t[(k + 1) % 3]]));
     body.thinness_1pm.assign(vertices, 0.0);
     body.normal_mpn.assign(vertices, 0.0);
     body.tangential_mpn.assign(vertices, 0.0);
@@ -137,27 +136,31 @@ glm::dvec3 normal_on(const Body& body, const haptics::SurfacePoint& at) noexcept
 }
 
 Foot nearest_on(const Body& body, const glm::dvec3& from_m) noexcept {
-    double best = std::numeric_limits<double>::max();
-    std::size_t nearest = 0;
-    for (std::size_t v = 0; v < body.skin_m.size(); ++v) {
-        const glm::dvec3 d = body.skin_m[v] - from_m;
-        const double square = glm::dot(d, d);
-        if (square < best) {
-            best = square;
-            nearest = v;
+    double nearest2 = std::numeric_limits<double>::max(); // of the vertices, then of triangles
+    for (const glm::dvec3& v : body.skin_m) {
+        const glm::dvec3 d = v - from_m;
+        nearest2 = std::min(nearest2, glm::dot(d, d));
+    }
+    // a triangle so near has its first corner within an edge of there
+    constexpr double kStretched = 1.5;
+    const double near_m = std::sqrt(nearest2) + kStretched * body.longest_edge_m;
+    const std::vector<tissue::Triangle>& triangles = body.organ->surface.triangles;
+    Foot foot{.at = {0, {1.0, 0.0, 0.0}}}; // of a place that is not a number
+    nearest2 = std::numeric_limits<double>::max();
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        const glm::dvec3& a = body.skin_m[triangles[t][0]];
+        const glm::dvec3 first = a - from_m;
+        if (glm::dot(first, first) > near_m * near_m)
+            continue;
+        const glm::dvec3 &b = body.skin_m[triangles[t][1]], &c = body.skin_m[triangles[t][2]];
+        const glm::dvec3 w = tissue::closest_weight(a, b, c, from_m);
+        const glm::dvec3 d = w.x * a + w.y * b + w.z * c - from_m;
+        if (glm::dot(d, d) < nearest2) {
+            nearest2 = glm::dot(d, d);
+            foot.at = {static_cast<int>(t), w};
         }
     }
-    const std::uint32_t triangle = body.some_triangle[nearest];
-    const tissue::Triangle& corners = body.organ->surface.triangles[triangle];
-    Foot foot;
-    foot.at.triangle = static_cast<int>(triangle);
-    for (int k = 0; k < 3; ++k)
-        foot.at.weight[k] = corners[k] == nearest ? 1.0 : 0.0;
-    constexpr int kPasses = 3; // the triangle turns under the point at each edge
-    for (int pass = 0; pass < kPasses; ++pass) {
-        foot.at = haptics::walk(BodySurface{body}, foot.at, from_m - place_on(body, foot.at)).point;
-    }
-    foot.distance_m = glm::length(from_m - place_on(body, foot.at));
+    foot.distance_m = std::sqrt(nearest2);
     return foot;
 }
 

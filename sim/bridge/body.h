@@ -45,7 +45,7 @@ struct Body {
     tissue::Material material;
     std::optional<SoftBody> soft;
     std::vector<glm::dvec3> skin_m, skin_normal; // as deformed now
-    std::vector<std::uint32_t> some_triangle;    // one triangle at each skin vertex
+    double longest_edge_m = 0.0;                 // of the skin at rest
     // the sub-grid law: at each skin vertex for this material, and for the tip of each tool
     std::vector<double> thinness_1pm, normal_mpn, tangential_mpn; // thinness: 1 / thickness
     std::array<TipLaw, haptics::kTools> tip;
@@ -74,7 +74,7 @@ struct BodySurface {
     }
 };
 
-/// Foot point of `from_m` on the skin, by the nearest vertex and a walk. `distance_m`: to it.
+/// The nearest point of the skin; exact while no edge is stretched by half. `distance_m`: to it.
 struct Foot {
     haptics::SurfacePoint at;
     double distance_m = 0.0;

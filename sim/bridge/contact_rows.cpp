@@ -1,7 +1,7 @@
 #include "sim/bridge/contact_rows.h"
 
+#include "haptics/contact/carried_point.h"
 #include "haptics/contact/grasp.h"
-#include "haptics/contact/surface_walk.h"
 
 #include <algorithm>
 #include <glm/geometric.hpp>
@@ -33,6 +33,21 @@ void find_nearest(TissueRig& rig, int tool, const glm::dvec3& from_m, double rea
     rig.memory[tool] = {};
 }
 
+haptics::WalkResult carried(const Body& body, const haptics::SurfacePoint& at,
+                            const glm::dvec3& slip_m, const glm::dvec3& tip_m) noexcept {
+    const auto read = [&](const haptics::SurfacePoint& point) {
+        return haptics::SurfacePlace{place_on(body, point), normal_on(body, point)};
+    };
+    return haptics::carry(BodySurface{body}, read, at, slip_m, tip_m);
+}
+
+// A tip that no skin of the body reaches touches nothing, whatever its contact point says: that one
+// is on the far side of something thin.
+bool is_off(const Body& body, const haptics::ToolTip& tip, const Foot& foot) noexcept {
+    const glm::dvec3 out = tip.centre_m - place_on(body, foot.at);
+    return foot.distance_m > tip.radius_m && glm::dot(out, normal_on(body, foot.at)) > 0.0;
+}
+
 // A touching tool carries its point along: first as far as stiction lets it, then we solve.
 void follow(TissueRig& rig, int tool, const haptics::ToolTip& tip) noexcept {
     FemContact& contact = rig.contact[tool];
@@ -48,7 +63,7 @@ void follow(TissueRig& rig, int tool, const haptics::ToolTip& tip) noexcept {
                                       .law = law_on(body, contact.at, tool, rig.floor_mpn[tool])};
         const glm::dvec3 slip =
             haptics::predicted_slip(row, contact.own_compliance, rig.memory[tool]);
-        contact.at = haptics::walk(BodySurface{body}, contact.at, slip).point;
+        contact.at = carried(body, contact.at, slip, tip.centre_m).point;
     }
 }
 
@@ -80,7 +95,10 @@ void follow_contacts(TissueRig& rig, const ToolsNow& tools) noexcept {
         haptics::ContactMemory& memory = rig.memory[i];
         if (memory.grasped && (closes || !(tip.grip.hold_n > 0.0)))
             haptics::release_grasp(memory);
-        if (contact.body < 0 || !memory.touching) {
+        const bool lost = memory.touching && !memory.grasped && contact.body >= 0 &&
+                          is_off(rig.bodies[contact.body], tip,
+                                 nearest_on(rig.bodies[contact.body], tip.centre_m));
+        if (contact.body < 0 || !memory.touching || lost) {
             find_nearest(rig, i, closes ? tip.grip.closed_at_m : tip.centre_m,
                          tip.radius_m + reach_m);
         } else if (!memory.grasped) {
@@ -206,7 +224,7 @@ void slide_contacts(TissueRig& rig, const haptics::ContactSolution& solution) no
             continue;
         const Body& body = rig.bodies[contact.body];
         const haptics::WalkResult walked =
-            haptics::walk(BodySurface{body}, contact.at, solution.slip_m[i]);
+            carried(body, contact.at, solution.slip_m[i], contact.last_tip_m);
         contact.at = walked.point;
         if (walked.at_rim && rig.memory[i].grasped && solution.slip_m[i] != glm::dvec3{0.0})
             haptics::release_grasp(rig.memory[i]);

@@ -53,37 +53,6 @@ double distance2(const BoundaryTree::Box& box, const dvec3& p) {
     return glm::dot(outside, outside);
 }
 
-// Closest point of a triangle, as weights (Ericson, Real-Time Collision Detection, 5.1.5).
-dvec3 closest_weight(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& p) {
-    const dvec3 ab = b - a, ac = c - a;
-    const double d1 = glm::dot(ab, p - a), d2 = glm::dot(ac, p - a);
-    if (d1 <= 0.0 && d2 <= 0.0)
-        return {1, 0, 0};
-    const double d3 = glm::dot(ab, p - b), d4 = glm::dot(ac, p - b);
-    if (d3 >= 0.0 && d4 <= d3)
-        return {0, 1, 0};
-    const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
-        const double v = d1 / (d1 - d3);
-        return {1.0 - v, v, 0};
-    }
-    const double d5 = glm::dot(ab, p - c), d6 = glm::dot(ac, p - c);
-    if (d6 >= 0.0 && d5 <= d6)
-        return {0, 0, 1};
-    const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
-        const double w = d2 / (d2 - d6);
-        return {1.0 - w, 0, w};
-    }
-    const double va = d3 * d6 - d5 * d4;
-    if (va <= 0.0 && d4 >= d3 && d5 >= d6) {
-        const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return {0, 1.0 - w, w};
-    }
-    const double sum = va + vb + vc;
-    return {va / sum, vb / sum, vc / sum};
-}
-
 // Line against triangle (Moeller & Trumbore 1997), t and weights.
 std::optional<BoundaryPoint> hit(const BoundaryTree& tree, std::uint32_t t, const dvec3& from,
                                  const dvec3& direction) {
@@ -121,6 +90,36 @@ bool crosses(const BoundaryTree::Box& box, const dvec3& from, const dvec3& direc
 }
 
 } // namespace
+
+dvec3 closest_weight(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& p) noexcept {
+    const dvec3 ab = b - a, ac = c - a;
+    const double d1 = glm::dot(ab, p - a), d2 = glm::dot(ac, p - a);
+    if (d1 <= 0.0 && d2 <= 0.0)
+        return {1, 0, 0};
+    const double d3 = glm::dot(ab, p - b), d4 = glm::dot(ac, p - b);
+    if (d3 >= 0.0 && d4 <= d3)
+        return {0, 1, 0};
+    const double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+        const double v = d1 / (d1 - d3);
+        return {1.0 - v, v, 0};
+    }
+    const double d5 = glm::dot(ab, p - c), d6 = glm::dot(ac, p - c);
+    if (d6 >= 0.0 && d5 <= d6)
+        return {0, 0, 1};
+    const double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+        const double w = d2 / (d2 - d6);
+        return {1.0 - w, 0, w};
+    }
+    const double va = d3 * d6 - d5 * d4;
+    if (va <= 0.0 && d4 >= d3 && d5 >= d6) {
+        const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return {0, 1.0 - w, w};
+    }
+    const double sum = va + vb + vc;
+    return {va / sum, vb / sum, vc / sum};
+}
 
 BoundaryTree make_boundary_tree(const TetMesh& mesh) {
     return make_surface_tree(mesh.rest_m, boundary_triangles(mesh));

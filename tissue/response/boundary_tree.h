@@ -39,6 +39,10 @@ BoundaryPoint nearest_point(const BoundaryTree& tree, const glm::dvec3& point_m)
 std::vector<BoundaryPoint> line_hits(const BoundaryTree& tree, const glm::dvec3& from_m,
                                      const glm::dvec3& direction, double low_m, double high_m);
 
+/// Weights of the point of a triangle that is nearest to `p` (Ericson 2005, 5.1.5). Real-time safe.
+glm::dvec3 closest_weight(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
+                          const glm::dvec3& p) noexcept;
+
 glm::dvec3 position_m(const BoundaryTree& tree, const BoundaryPoint& at);
 
 } // namespace tissue
