@@ -1,7 +1,7 @@
 // Jaws on the shipped liver: FEM steps under prescribed tips, and whole attempts with a script.
 #include "haptics/contact/grasp.h"
 #include "sim/session/session.h"
-#include "tests/sim/scene_fixture.h"
+#include "tests/sim/grasp_bench.h"
 
 #include <cmath>
 #include <doctest/doctest.h>
@@ -11,66 +11,10 @@
 #include <glm/matrix.hpp>
 #include <unistd.h>
 
+using grasp_tests::Bench;
+using grasp_tests::kRadius_m;
+
 namespace {
-
-constexpr double kRadius_m = 3e-3;
-
-// One tool on the first organ's skin nearest to the camera, or on another organ's.
-struct Bench {
-    sim::LoadedScene loaded;
-    sim::TissueRig rig;
-    std::unique_ptr<sim::TissueAnswer> answer = std::make_unique<sim::TissueAnswer>();
-    sim::ToolsNow tools;
-    glm::dvec3 place, normal;
-    double jaw = 0.0;
-
-    explicit Bench(std::size_t body = 0, const std::string& scene = "basic")
-        : loaded(sim::load_scene(scene)), rig(sim::make_tissue(loaded, {}, {})) {
-        const sim::Body& organ = rig.bodies[body];
-        const auto at = sim::nearest_on(organ, scene == "basic" ? glm::dvec3{0, 0, 0.2}
-                                                                : glm::dvec3{0.04, 0.04, 0.1})
-                            .at;
-        place = sim::place_on(organ, at);
-        normal = sim::normal_on(organ, at);
-        for (int i = 0; i < sim::kTools; ++i)
-            tools.tip[i] = {{0.0, 0.0, 1.0}, kRadius_m};
-    }
-    glm::dvec3 tip(double up_m) const { return place + (kRadius_m + up_m) * normal; }
-    // one FEM step, 10 ms, with the tip there
-    glm::dvec3 step(const glm::dvec3& tip_m) {
-        haptics::ToolTip& tool = tools.tip[0];
-        tool.centre_m = tip_m;
-        tool.grip = haptics::next_grip({}, tool.grip, jaw, tip_m);
-        tools.tick += 10;
-        sim::tissue_step(rig, tools, *answer);
-        return force();
-    }
-    glm::dvec3 rest(const glm::dvec3& tip_m, int steps) {
-        for (int i = 0; i < steps; ++i)
-            step(tip_m);
-        return force();
-    }
-    // pressed, closed, then lifted to `up_m` at 20 mm/s
-    void lift(double up_m) {
-        rest(tip(-2e-3), 60);
-        jaw = 1.0;
-        for (double up = -2e-3; up < up_m; up += 2e-4)
-            step(tip(up));
-    }
-    glm::dvec3 force() const { return rig.contact[0].force_n; }
-    bool grasped() const { return rig.memory[0].grasped; }
-    glm::dvec3 material_place() const { return sim::place_on(rig.bodies[0], rig.contact[0].at); }
-    // of the organ, kinetic and elastic
-    double energy_j() const {
-        const sim::SoftBody& soft = *rig.bodies[0].soft;
-        double e = tissue::elastic_energy_j(soft.model, soft.state);
-        for (std::size_t v = 0; v < soft.state.velocity_mps.size(); ++v) {
-            const glm::dvec3 u = soft.state.velocity_mps[v];
-            e += 0.5 * soft.model.mass_kg[v] * glm::dot(u, u);
-        }
-        return e;
-    }
-};
 
 // What the published local model yields at rest under a unit force on the held point, m/N.
 glm::dmat3 static_compliance(const Bench& bench) {
@@ -140,7 +84,7 @@ struct TemporaryScript {
 TEST_CASE("grasp: a lifted organ follows the tip, as hard as the local model says") {
     // a block held along its sides: what a liver yields as a whole is not in a local model
     const scene_tests::Directory scene;
-    Bench bench(0, scene.path());
+    Bench bench(0, scene.path(), grasp_tests::kOverBlock_m);
     bench.lift(4e-3);
     const glm::dvec3 before = bench.rest(bench.tip(4e-3), 300);
     REQUIRE(bench.grasped());
