@@ -20,19 +20,23 @@ Tangents tangents_of(const glm::dvec3& n) noexcept {
     return {first, glm::cross(n, first)};
 }
 
-// The star: where the contact may have slid to when the answer is used. Its arm is a third of
-// the kernel's radius, half the nodal size; anything up to three quarters of that size serves.
-tissue::BasisContact basis_contact(const Body& body, const FemContact& contact) noexcept {
+// The star: where a contact that jaws do not hold may have slid to when the answer is used. Its arm
+// is a third of the kernel's radius, half the nodal size; up to three quarters of that size serve.
+tissue::BasisContact basis_contact(const Body& body, const FemContact& contact,
+                                   bool held) noexcept {
     const Tangents t = tangents_of(contact.normal);
-    const tissue::Triangle& corner = body.organ->surface.triangles[contact.at.triangle];
-    const double arm_m = body.organ->surface.footprint_radius_m[corner[0]] / 3.0;
-    const std::array<glm::dvec3, 4> arms{arm_m * t.first, -arm_m * t.first, arm_m * t.second,
-                                         -arm_m * t.second};
     tissue::BasisContact out{.centre = tissue_point(contact.at),
                              .star = {},
                              .normal = contact.normal,
                              .tangent1 = t.first,
-                             .tangent2 = t.second};
+                             .tangent2 = t.second,
+                             .held = held};
+    if (held)
+        return out;
+    const tissue::Triangle& corner = body.organ->surface.triangles[contact.at.triangle];
+    const double arm_m = body.organ->surface.footprint_radius_m[corner[0]] / 3.0;
+    const std::array<glm::dvec3, 4> arms{arm_m * t.first, -arm_m * t.first, arm_m * t.second,
+                                         -arm_m * t.second};
     for (int k = 0; k < 4; ++k) {
         out.star[k] = tissue_point(haptics::walk(BodySurface{body}, contact.at, arms[k]).point);
     }
@@ -54,7 +58,8 @@ bool basis_still_good(const Body& body, std::span<const tissue::BasisContact> co
         return false;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         const glm::dvec3 moved = rest_place(body, contacts[i].centre) - soft.basis_rest_m[i];
-        if (!(glm::dot(moved, moved) < kMiddle_m * kMiddle_m))
+        if (!(glm::dot(moved, moved) < kMiddle_m * kMiddle_m) ||
+            contacts[i].held != soft.basis_held[i])
             return false;
     }
     return true;
@@ -71,8 +76,10 @@ void compute_basis(Body& body, std::span<const tissue::BasisContact> contacts) n
     tissue::turn_shapes(soft.basis, soft.model.unknowns, soft.shape_by_unknown);
     soft.basis_of = soft.linearisations;
     soft.basis_contacts = contacts.size();
-    for (std::size_t i = 0; i < contacts.size(); ++i)
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
         soft.basis_rest_m[i] = rest_place(body, contacts[i].centre);
+        soft.basis_held[i] = contacts[i].held;
+    }
 }
 
 // Modes of one body into the common list. Returns where they begin.
@@ -156,10 +163,10 @@ void make_local_models(TissueRig& rig, haptics::LocalModels& local) noexcept {
             continue;
         std::array<tissue::BasisContact, kTools> contacts;
         std::size_t count = 0;
-        for (const FemContact& contact : rig.contact) {
-            if (contact.body != static_cast<int>(b))
+        for (int i = 0; i < kTools; ++i) {
+            if (rig.contact[i].body != static_cast<int>(b))
                 continue;
-            contacts[count++] = basis_contact(rig.bodies[b], contact);
+            contacts[count++] = basis_contact(rig.bodies[b], rig.contact[i], rig.memory[i].grasped);
         }
         if (count == 0)
             continue;

@@ -28,6 +28,7 @@ struct SoftBody {
     int linearisations = 0; // counts them, so that what rests on one knows when it is old
     int basis_of = -1;      // the linearisation and places that the basis was made for
     std::array<glm::dvec3, haptics::kTools> basis_rest_m{};
+    std::array<bool, haptics::kTools> basis_held{};
     std::size_t basis_contacts = 0;
     double slow_s = 0.0; // for how long nothing has touched it and nothing has moved
     bool resting = true; // nothing touches it and nothing moves: steps cost nothing

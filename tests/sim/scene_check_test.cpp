@@ -49,7 +49,7 @@ TEST_CASE("scene check: every mistake in a scene's text is said at once") {
     CHECK(said ==
           std::vector<std::string>{
               scene + ":2: titel = \"A block\": unknown key; accepted here: id, title, organ, "
-                      "tool, view",
+                      "tool, view, scope",
               scene + ":1: title is missing: text in quotes",
               scene + ":7: young_kpa = \"soft\": a number from 0.1 to 1e+06",
               scene + ":14: role = \"middle\": one of \"left\", \"right\", \"assist\"",

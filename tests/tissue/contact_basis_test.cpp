@@ -141,6 +141,34 @@ TEST_CASE("the answers to all loads and their moments lie in the basis") {
     CHECK(outside(s, basis, y) > 0.1);
 }
 
+TEST_CASE("a held point has more moments instead of a star, beside one that is not held") {
+    Scene s = scene(0.01);
+    tissue::ContactBasis basis = tissue::make_contact_basis(s.block.model);
+    std::vector<tissue::BasisContact> two{contact(s.block, 0.056, 0.039),
+                                          contact(s.block, 0.030, 0.058)};
+    two[1].held = true;
+    for (int order = 0; order < 2; ++order) {
+        tissue::compute_contact_basis(s.block.model, s.block.skin, s.state, s.system, two, basis);
+        CHECK(basis.modes == 22);
+        check_orthonormal_and_diagonal(s, basis);
+        for (const tissue::BasisContact& c : two) {
+            for (const dvec3& d : {c.normal, c.tangent1, c.tangent2}) {
+                std::vector<double> y = row(s, c.centre, d);
+                const int moments = d == c.normal ? 3 : c.held ? 4 : 2;
+                for (int k = 0; k < moments; ++k) {
+                    s.system.factor.solve(y, 1);
+                    CHECK(outside(s, basis, y) < 1e-7); // roundoff grows from moment to moment
+                    y = times_mass(s.block.model, y);
+                }
+            }
+            std::vector<double> y = row(s, c.star[0], c.normal);
+            s.system.factor.solve(y, 1);
+            CHECK((outside(s, basis, y) < 1e-8) == !c.held);
+        }
+        std::swap(two[0], two[1]);
+    }
+}
+
 TEST_CASE("static modes reproduce the static response at the contact and at its star") {
     Scene s = scene(bodies::kStatics);
     tissue::ContactBasis basis = tissue::make_contact_basis(s.block.model);

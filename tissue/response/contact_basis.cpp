@@ -1,6 +1,6 @@
 // tissue/response/contact_basis.cpp
 // Moment-matched modes of the tissue around the tools. Tissue loop, every step, on its critical
-// path: three blocked solves and a few tall-skinny products.
+// path: three or four blocked solves and a few tall-skinny products.
 //
 // Everything is done in the coordinates y = M^(1/2) x, in which M-orthonormal is orthonormal, and
 // every column y is carried together with z = M^(-1/2) A x, which is known: it is the load that
@@ -24,10 +24,13 @@ namespace {
 using glm::dvec3;
 
 constexpr double kRelativeCut = 1e-6;
-constexpr int kLoads = 7;      // block 1, per contact: n, t1, t2, four star rows
-constexpr int kDirections = 3; // block 2, per contact
-static_assert(kLoads + kDirections + 1 == kModesPerContact);
 static_assert(kMaxBasis <= kSmall);
+
+// Columns of a contact, moment by moment; the first of one moment make those of the next.
+constexpr int kMoments = 4;
+constexpr std::array<int, kMoments> kFree{7, 3, 1, 0}; // n t1 t2 and the star, n t1 t2, n
+constexpr std::array<int, kMoments> kHeld{3, 3, 3, 2}; // t1 t2 n thrice, t1 t2
+static_assert(7 + 3 + 1 == kModesPerContact && 3 + 3 + 3 + 2 == kModesPerContact);
 
 struct Columns {
     double* at;
@@ -51,21 +54,25 @@ Work split(ContactBasis& basis, std::size_t n) noexcept {
         {p, n}, {p + wide, n}, {p + 2 * wide, n}, {p + 2 * wide + n, n}, {p + 2 * wide + 2 * n, n}};
 }
 
-// The loads of block 1 in z.
-void load_block(const CorotatedModel& model, const ContactSurface& surface,
-                std::span<const BasisContact> contacts, const Columns& z) noexcept {
-    int j = 0;
-    std::fill_n(z[0], z.n * contacts.size() * kLoads, 0.0);
+// The loads of one contact in z, from column `first`.
+void load_columns(const CorotatedModel& model, const ContactSurface& surface,
+                  const BasisContact& contact, const Columns& z, int first) noexcept {
     const auto put = [&](const ContactPoint& at, const dvec3& direction) {
-        add_row(model, surface, at, direction, 1.0, z.range(j++, 1));
+        const std::span<double> column = z.range(first++, 1);
+        std::fill(column.begin(), column.end(), 0.0);
+        add_row(model, surface, at, direction, 1.0, column);
     };
-    for (const BasisContact& c : contacts) {
-        put(c.centre, c.normal);
-        put(c.centre, c.tangent1);
-        put(c.centre, c.tangent2);
-        for (const ContactPoint& star : c.star)
-            put(star, c.normal);
+    if (contact.held) {
+        put(contact.centre, contact.tangent1);
+        put(contact.centre, contact.tangent2);
+        put(contact.centre, contact.normal);
+        return;
     }
+    put(contact.centre, contact.normal);
+    put(contact.centre, contact.tangent1);
+    put(contact.centre, contact.tangent2);
+    for (const ContactPoint& star : contact.star)
+        put(star, contact.normal);
 }
 
 // z = M y: the load that makes the next moment.
@@ -163,24 +170,29 @@ void fill_masses(const CorotatedModel& model, const CorotatedState& state, const
     }
 }
 
-// The raw columns and their loads, moment by moment: three solves for all contacts together.
+// The raw columns and their loads, moment by moment, each one solve for all contacts together.
+// `blocks`: columns of each moment. Returns how many in all.
 int raw_columns(const CorotatedModel& model, const ContactSurface& surface,
-                std::span<const BasisContact> contacts, SparseFactor& factor,
-                const Work& w) noexcept {
-    const int count = static_cast<int>(contacts.size());
-    const int second = kLoads * count, third = second + kDirections * count;
-    load_block(model, surface, contacts, w.z);
-    solve_columns(w, 0, second, factor);
-    for (int c = 0; c < count; ++c) {
-        for (int d = 0; d < kDirections; ++d) {
-            next_moment(w, kLoads * c + d, second + kDirections * c + d);
+                std::span<const BasisContact> contacts, SparseFactor& factor, const Work& w,
+                std::array<int, kMoments>& blocks) noexcept {
+    std::array<int, kMaxContacts> last{}; // first column of each contact, one moment before
+    int columns = 0;
+    for (int moment = 0; moment < kMoments; ++moment) {
+        const int first = columns;
+        for (std::size_t c = 0; c < contacts.size(); ++c) {
+            const int count = (contacts[c].held ? kHeld : kFree)[moment];
+            if (moment == 0)
+                load_columns(model, surface, contacts[c], w.z, columns);
+            for (int k = 0; moment > 0 && k < count; ++k)
+                next_moment(w, last[c] + k, columns + k);
+            last[c] = columns;
+            columns += count;
         }
+        blocks[moment] = columns - first;
+        if (columns > first)
+            solve_columns(w, first, columns - first, factor);
     }
-    solve_columns(w, second, third - second, factor);
-    for (int c = 0; c < count; ++c)
-        next_moment(w, second + kDirections * c, third + c);
-    solve_columns(w, third, count, factor);
-    return third + count;
+    return columns;
 }
 
 } // namespace
@@ -202,7 +214,8 @@ void compute_contact_basis(const CorotatedModel& model, const ContactSurface& su
     const auto n = static_cast<std::size_t>(model.unknowns);
     const Work w = split(basis, n);
     fill_masses(model, state, w);
-    const int columns = raw_columns(model, surface, contacts, system.factor, w);
+    std::array<int, kMoments> blocks{};
+    const int columns = raw_columns(model, surface, contacts, system.factor, w, blocks);
     for (int j = 0; j < columns; ++j) {
         for (std::size_t i = 0; i < n; ++i) {
             w.y[j][i] *= w.root[i];
@@ -211,8 +224,6 @@ void compute_contact_basis(const CorotatedModel& model, const ContactSurface& su
     }
 
     // orthonormal Q in `shape`, M^(-1/2) A M^(-1/2) Q in w.y
-    const int count = static_cast<int>(contacts.size());
-    const std::array<int, 3> blocks{kLoads * count, kDirections * count, count};
     double* q = basis.shape.data();
     const int rank = orthonormalise(w, blocks, columns, q);
 

@@ -4,7 +4,13 @@
 // neighbouring contact points, because the contact slides before the answer is used).
 //   B1 = A^-1 [n t1 t2 at c | n at c +- delta t1, c +- delta t2]
 //   B2 = A^-1 M B1(n t1 t2 at c),  B3 = A^-1 M B2(n at c)
+// A point that jaws hold stays where it is: more moments of it instead of the star,
+//   B1 = A^-1 [t1 t2 n at c], B2, B3, B4 = A^-1 M B3(t1 t2 at c)
 //   V: M-orthonormal, Lambda = V^T K V diagonal
+// A is the FEM step's: the modes are exact for what a load has done after one such step, good for
+// the few steps that an answer lives, and too stiff at rest where the body as a whole sways more
+// slowly (liver: 4 to 10 Hz). Modes of K would be exact at rest and wrong when they are used; the
+// numbers are in tests/sim/grasp_compliance_test.cpp.
 #pragma once
 
 #include "tissue/response/contact_rows.h"
@@ -19,6 +25,7 @@ struct BasisContact {
     ContactPoint centre;
     std::array<ContactPoint, 4> star; // c +- delta t1, c +- delta t2
     glm::dvec3 normal, tangent1, tangent2;
+    bool held = false; // by jaws; `star` means nothing then
 };
 
 /// Buffers sized once; contents mean nothing between calls except as output.
