@@ -29,6 +29,7 @@ class Checker {
     ExerciseCheck run() {
         ExerciseCheck out;
         out.id = exercise_.id;
+        out.kind = exercise_.kind;
         if (exercise_.lift)
             check_lift(root_.table("lift"));
         for (std::size_t t = 0; t < exercise_.target.size(); ++t)

@@ -9,6 +9,8 @@
 //                                                               or pulls the organ from its bed
 //   F(0.5 mm) <= force_max_n                                    finer no hand holds a depth at the
 //                                                               end of a long instrument
+// A tube to be found needs no force band: it has to be hidden at rest, and in the endoscope's sight
+// once what is to be lifted is out of the way.
 // The rule for neighbours is the exercise file's own (two radii, or one touch counts for both),
 // asked again where targets of one role lie after they were snapped onto the skin.
 #pragma once
@@ -16,6 +18,7 @@
 #include "sim/check/finding.h"
 #include "sim/check/rest_feel.h"
 #include "sim/check/solid.h"
+#include "tasks/exercise/exercise.h"
 
 namespace sim {
 
@@ -35,6 +38,7 @@ struct TargetCheck {
 
 struct ExerciseCheck {
     std::string id, file;
+    tasks::ExerciseKind kind{};
     std::vector<TargetCheck> target;
     std::vector<Finding> finding;
 };

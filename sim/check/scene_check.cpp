@@ -112,6 +112,26 @@ void check_tools(const LoadedScene& scene, std::span<const Solid> solids, const 
     }
 }
 
+// The endoscope is where nothing is, at the start.
+void check_scope(const LoadedScene& scene, std::span<const Solid> solids, const TomlTable& root,
+                 SceneCheck& out) {
+    if (!scene.scene.scope)
+        return;
+    const SceneScope& scope = *scene.scene.scope;
+    const haptics::Trocar& trocar = scope.optics.trocar;
+    const glm::dvec3& eye_m = scope.start.tip_m;
+    out.tool.push_back({tasks::Role::scope, glm::distance(eye_m, trocar.fulcrum_m)});
+    const Obstacle in_way = shaft_obstacle(solids, trocar, eye_m, -1);
+    if (in_way.body >= 0) {
+        out.finding.push_back(
+            {"scope_blocked", root.table("scope").mention("fulcrum_mm"),
+             fmt::format("a port from which the endoscope comes to its start in "
+                         "a straight line; its shaft would pass through \"{}\" "
+                         "at {}",
+                         scene.scene.organ[in_way.body].name, mm(in_way.place_m))});
+    }
+}
+
 struct ExerciseText {
     std::string file, text;
 };
@@ -154,6 +174,7 @@ SceneCheck check_scene(const std::string& wanted, const std::string& exercise) {
     const std::vector<Solid> solids = make_solids(loaded);
     check_organs(loaded, solids, root.tables("organ"), out);
     check_tools(loaded, solids, root, out);
+    check_scope(loaded, solids, root, out);
     const std::vector<Body> bodies = make_bodies(loaded, TissueConfig{}.step_s);
     for (const ExerciseText& e : exercises) {
         out.exercise.push_back(check_exercise(loaded, bodies, solids, e.text, e.file));

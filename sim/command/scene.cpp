@@ -87,13 +87,18 @@ void print(const SceneCheck& check) {
         fmt::print("  {:<12} starts {:.0f} mm inside\n", tasks::role_name(t.role),
                    1e3 * t.insertion_m);
     for (const ExerciseCheck& e : check.exercise) {
-        fmt::print("  exercise {}: {} targets\n", e.id, e.target.size());
+        fmt::print("  exercise {}: {} {}s\n", e.id, e.target.size(),
+                   tasks::table_of_targets(e.kind));
         for (const TargetCheck& t : e.target) {
-            if (!t.organ.empty())
-                fmt::print("    {:<4} {:<7} {:<10} {:.0f} mm inside, {:.3f} N at {:.1f} mm, "
-                           "{:.2f} N at {:.1f} mm\n",
-                           t.id, tasks::role_name(t.role), t.organ, 1e3 * t.insertion_m,
-                           t.shallow_n, 1e3 * kShallowPress_m, t.deep_n, 1e3 * t.deep_m);
+            if (t.organ.empty())
+                continue;
+            const std::string felt =
+                t.deep_n > 0.0
+                    ? fmt::format(", {:.3f} N at {:.1f} mm, {:.2f} N at {:.1f} mm", t.shallow_n,
+                                  1e3 * kShallowPress_m, t.deep_n, 1e3 * t.deep_m)
+                    : "";
+            fmt::print("    {:<6} {:<7} {:<10} {:.0f} mm inside{}\n", t.id,
+                       tasks::role_name(t.role), t.organ, 1e3 * t.insertion_m, felt);
         }
     }
     for (const tasks::BadInput& m : check.mistakes)

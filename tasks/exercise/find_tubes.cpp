@@ -22,16 +22,36 @@ void append_at(Progress& progress, EventKind kind, const Observation& seen, int 
     progress.events.back().target = static_cast<std::int8_t>(tube);
 }
 
+// The tube that the picture is about: of those that are seen and not found, the most central one;
+// none while a tool points at any of them.
+std::size_t shown_tube(const Progress& progress, const Exercise& exercise, const Observation& seen,
+                       std::size_t tubes) {
+    std::size_t shown = tubes;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < tubes; ++k) {
+        if (progress.tube[k].found)
+            continue;
+        if (tube_pointed(exercise, seen, k, static_cast<int>(exercise.target[k].role)))
+            return tubes;
+        const double off = off_centre(seen.view, seen.target[k].position_m);
+        if (off < least && tube_seen(exercise, seen, k)) {
+            least = off;
+            shown = k;
+        }
+    }
+    return shown;
+}
+
 // One tube in one millisecond: found, or in the picture for long and nobody points.
-void note_tube(Progress& progress, const Exercise& exercise, const Observation& seen,
-               std::size_t k) {
+void note_tube(Progress& progress, const Exercise& exercise, const Observation& seen, std::size_t k,
+               bool waits) {
     TubeSearch& tube = progress.tube[k];
     const int t = static_cast<int>(exercise.target[k].role);
     const bool shown = tube_seen(exercise, seen, k);
     const bool pointed = tube_pointed(exercise, seen, k, t);
     tube.good_ticks = shown && pointed ? tube.good_ticks + 1 : 0;
-    tube.seen_ticks = shown && !pointed ? tube.seen_ticks + 1 : 0;
-    if (!shown || pointed)
+    tube.seen_ticks = waits ? tube.seen_ticks + 1 : 0;
+    if (!waits)
         tube.not_pointed = false;
     if (!tube.not_pointed && tube.seen_ticks >= ticks_of(exercise.point_within_s)) {
         tube.not_pointed = true;
@@ -131,9 +151,10 @@ void observe_tubes(Progress& progress, const Exercise& exercise, const Observati
         note_pointing(progress, exercise, seen, tubes, t);
         note_misplaced(progress, exercise, seen, tubes, t);
     }
+    const std::size_t waits = shown_tube(progress, exercise, seen, tubes);
     for (std::size_t k = 0; k < tubes; ++k)
         if (!progress.tube[k].found)
-            note_tube(progress, exercise, seen, k);
+            note_tube(progress, exercise, seen, k, k == waits);
     while (progress.next < static_cast<int>(tubes) &&
            progress.tube[static_cast<std::size_t>(progress.next)].found)
         ++progress.next;

@@ -13,7 +13,10 @@ constexpr double kTilted_rad = 15.0 * std::numbers::pi / 180.0;
 
 ScopeSums scope_sums(const ScoreState& score, const Window& window) {
     ScopeSums sums;
-    const std::span<const glm::dvec3> eye_m{score.eye_m.data() + window.first, window.count};
+    // from where it was first, so that an eye that rests has no way at all
+    std::vector<glm::dvec3> eye_m(window.count);
+    for (std::size_t i = 0; i < window.count; ++i)
+        eye_m[i] = score.eye_m[window.first + i] - score.eye_m[window.first];
     const std::vector<glm::dvec3> smooth_m = low_pass(eye_m, kFs_hz, kCutoff_hz);
     for (std::size_t i = 1; i < smooth_m.size(); ++i)
         sums.path_m += glm::distance(smooth_m[i - 1], smooth_m[i]);
