@@ -19,14 +19,17 @@ enum class Look : std::uint8_t {
     pancreas,
     fat,
     gallbladder,
+    artery,
+    vein,
+    duct,
     wall,
     tissue // anything else
 };
 
 /// In the order of Look.
-inline constexpr std::array<std::string_view, 10> kLookWords{
-    "liver",    "stomach", "spleen",      "kidney", "bowel",
-    "pancreas", "fat",     "gallbladder", "wall",   "tissue"};
+inline constexpr std::array<std::string_view, 13> kLookWords{
+    "liver",       "stomach", "spleen", "kidney", "bowel", "pancreas", "fat",
+    "gallbladder", "artery",  "vein",   "duct",   "wall",  "tissue"};
 
 /// The look of that name; tissue if it is no such word.
 constexpr Look look_named(std::string_view word) noexcept {

@@ -29,6 +29,6 @@ TEST_CASE("scene look: an unknown word is refused with all that are known") {
     CHECK_THROWS_WITH_AS(look_of(text),
                          "scene.toml:6: look = \"blue\": one of \"liver\", \"stomach\", "
                          "\"spleen\", \"kidney\", \"bowel\", \"pancreas\", \"fat\", "
-                         "\"gallbladder\", \"wall\", \"tissue\"",
+                         "\"gallbladder\", \"artery\", \"vein\", \"duct\", \"wall\", \"tissue\"",
                          tasks::BadInput);
 }
