@@ -84,7 +84,7 @@ void hold_scope(const ScopeInstrument& scope, const tasks::ScopeGoal& goal,
                 haptics::MouseDevice& device) noexcept {
     hold_scope(scope,
                haptics::aim_at(scope.scene.optics, goal.look_at_m, goal.distance_m,
-                               scope.scene.start.tip_m, goal.horizon_rad),
+                               goal.near_m.value_or(scope.scene.start.tip_m), goal.horizon_rad),
                device);
 }
 

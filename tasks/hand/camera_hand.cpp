@@ -93,6 +93,17 @@ void CameraHand::begin_move(const HandSight& sight, const Gaze& gaze) {
     move_.duration_s = std::max(move_.duration_s, along.duration_s);
 }
 
+// Somebody else holds the endoscope: what it looks at now, from as far as before, and at rest.
+void CameraHand::follow(const HandSight& sight) {
+    const View& view = sight.now.view;
+    goal_.look_at_m = view.eye_m + goal_.distance_m * view.forward;
+    goal_.horizon_rad = sight.now.horizon_rad;
+    goal_.near_m = view.eye_m;
+    move_ = plan_move(goal_.look_at_m, goal_.look_at_m, 1.0);
+    move_.time_s = move_.duration_s;
+    away_ticks_ = 0;
+}
+
 // An Ornstein-Uhlenbeck process whose spread is that of the fingers' aim on the camera head.
 void CameraHand::let_horizon_drift() {
     const double spread = skill_.aim_m / kCameraHead_m;
@@ -103,6 +114,10 @@ void CameraHand::let_horizon_drift() {
 ScopeGoal CameraHand::tick(const HandSight& sight) {
     seen_.push(gaze_now(sight));
     const Gaze& gaze = seen_.before(skill_.reaction_s);
+    if (sight.scope_held) {
+        follow(sight);
+        return goal_;
+    }
     let_horizon_drift();
     if (!arrived(move_)) {
         move_.time_s += kTick_s;

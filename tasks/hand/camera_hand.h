@@ -25,6 +25,7 @@ class CameraHand {
     Gaze gaze_now(const HandSight& sight);
     bool is_lifted(const HandSight& sight);
     std::size_t tube_of_interest(const HandSight& sight) const;
+    void follow(const HandSight& sight);
     void begin_move(const HandSight& sight, const Gaze& gaze);
     void let_horizon_drift();
 

@@ -1,8 +1,12 @@
 #include "tasks/hand/find_hand.h"
 
+#include "tasks/exercise/find_tubes.h"
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 
 namespace tasks {
@@ -79,28 +83,41 @@ glm::dvec3 FindHand::place_wanted(const HandSight& sight) const {
     return target.position_m + offset_m_ + above_m * target.normal;
 }
 
-// What is up stays up; else it is lifted first. Then the next tube, and the way there.
+// What is up stays up; else it is lifted first. Nothing to do: whoever holds the tool has to.
+bool FindHand::choose_job(const HandSight& sight) {
+    const int before = lifting_ ? -1 : tube_;
+    lifting_ = exercise_.lift && !seen_.before(skill_.reaction_s).holding;
+    const int tube = lifting_ ? -1 : choose_tube(sight);
+    if (lifting_ ? sight.held[static_cast<std::size_t>(exercise_.lift->role)] : tube < 0)
+        return false;
+    const Role role =
+        lifting_ ? exercise_.lift->role : exercise_.target[static_cast<std::size_t>(tube)].role;
+    tool_ = static_cast<int>(role);
+    if (lifting_) {
+        jaw_[static_cast<std::size_t>(tool_)] = 0.0;
+        return true;
+    }
+    tube_ = tube;
+    if (tube_ == before)
+        return true;
+    room_m_ = kHover_m;
+    const bool alone = std::none_of(sight.held.begin(), sight.held.end(), std::identity{});
+    if (random_.uniform() < skill_.lapse && alone)
+        lapse(sight);
+    return true;
+}
+
+// The next job, and the way there.
 void FindHand::decide(const HandSight& sight) {
-    const Percept& seen = seen_.before(skill_.reaction_s);
-    if (seen.done) {
+    if (seen_.before(skill_.reaction_s).done) {
         phase_ = Phase::finished;
         return;
     }
-    const int before = lifting_ ? -1 : tube_;
-    lifting_ = exercise_.lift && !seen.holding;
     offset_m_ = glm::dvec3{0.0};
     mistaken_ = near_ = false;
-    if (lifting_) {
-        tool_ = static_cast<int>(exercise_.lift->role);
-        jaw_[static_cast<std::size_t>(tool_)] = 0.0;
-    } else {
-        choose_tube(seen.found);
-        tool_ = static_cast<int>(exercise_.target[static_cast<std::size_t>(tube_)].role);
-        if (tube_ != before) {
-            room_m_ = kHover_m;
-            if (random_.uniform() < skill_.lapse)
-                lapse(sight);
-        }
+    if (!choose_job(sight)) {
+        pause(skill_.pause_s);
+        return;
     }
     route_from_m_ = goal();
     route_to_m_ = place_wanted(sight);
@@ -110,11 +127,28 @@ void FindHand::decide(const HandSight& sight) {
     next_stride(sight);
 }
 
-void FindHand::choose_tube(std::uint32_t found) {
+// The first that is not found; beside a person, of those whose tool is free, and if he has the
+// endoscope, the one that he shows. -1: none.
+int FindHand::choose_tube(const HandSight& sight) const {
+    const std::uint32_t found = seen_.before(skill_.reaction_s).found;
     const int tubes = static_cast<int>(exercise_.target.size());
-    tube_ = 0;
-    while (tube_ + 1 < tubes && (found & (1U << tube_)))
-        ++tube_;
+    int chosen = -1;
+    double off = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < tubes; ++k) {
+        const auto tool =
+            static_cast<std::size_t>(exercise_.target[static_cast<std::size_t>(k)].role);
+        if ((found & (1U << k)) || sight.held[tool])
+            continue;
+        const double off_k =
+            sight.scope_held ? off_centre(sight.now.view, sight.now.target[k].position_m) : 0.0;
+        if (chosen < 0 || off_k < off) {
+            chosen = k;
+            off = off_k;
+        }
+    }
+    const bool last_again =
+        chosen < 0 && !sight.held[static_cast<std::size_t>(exercise_.target.back().role)];
+    return last_again ? tubes - 1 : chosen; // found, and not yet told that all are
 }
 
 // The wrong tool, but never the one that holds; or a place 4-7 radii beside the tube.
@@ -215,7 +249,10 @@ void FindHand::look(const HandSight& sight) {
         deep_m_ = 0.0;
     } else if (near_) {
         phase_ = Phase::point;
-    } else { // from above the tube to it
+    } else if (sight.scope_held &&
+               !tube_seen(exercise_, sight.now, static_cast<std::size_t>(tube_))) {
+        pause(skill_.pause_s); // pointing at what nobody sees is an error
+    } else {                   // from above the tube to it
         near_ = true;
         corrections_ = 0;
         route_from_m_ = goal();
@@ -301,8 +338,22 @@ void FindHand::keep_pointing(const HandSight& sight) {
     }
 }
 
+// Tools that somebody else holds: where they are, and no job of ours.
+void FindHand::follow(const HandSight& sight) {
+    for (std::size_t t = 0; t < kTools; ++t) {
+        if (!sight.held[t])
+            continue;
+        goal_m_[t] = sight.now.tool[t].tip_m;
+        jaw_[t] = sight.now.tool[t].jaw;
+    }
+    const bool ours = phase_ != Phase::wait && phase_ != Phase::finished;
+    if (ours && sight.held[static_cast<std::size_t>(tool_)])
+        pause(skill_.reaction_s + skill_.plan_s);
+}
+
 HandGoals FindHand::tick(const HandSight& sight) {
     seen_.push(percept_of(sight));
+    follow(sight);
     ++phase_ticks_;
     switch (phase_) {
     case Phase::wait:

@@ -2,6 +2,7 @@
 // The scripted person of find-tubes, at all tools: takes hold of what hides the tubes and lifts it,
 // keeps it up, and points at one tube after the other with the tool it is for. Errs as Hand does,
 // by the same skill. What slips, is missed or is not counted is tried again.
+// What somebody else holds is his job: it follows those tools, and does the rest.
 // Called by sim once a tick; the endoscope is CameraHand's.
 #pragma once
 
@@ -33,8 +34,10 @@ class FindHand {
     Percept percept_of(const HandSight& sight) const;
     void pause(double seconds);
     void decide(const HandSight& sight);
-    void choose_tube(std::uint32_t found);
+    bool choose_job(const HandSight& sight);
+    int choose_tube(const HandSight& sight) const;
     void lapse(const HandSight& sight);
+    void follow(const HandSight& sight);
     void next_stride(const HandSight& sight);
     void travel(const HandSight& sight);
     void look(const HandSight& sight);
