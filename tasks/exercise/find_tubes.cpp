@@ -141,6 +141,24 @@ bool tube_pointed(const Exercise& exercise, const Observation& seen, std::size_t
     return t.present && glm::distance(t.tip_m, seen.target[tube].position_m) <= exercise.radius_m;
 }
 
+bool is_held_to_lift(const Exercise& exercise, const Observation& seen) noexcept {
+    if (!exercise.lift)
+        return false;
+    constexpr double kComesAlong_m = 12e-3; // what is held stays so near to the tip
+    const ToolObservation& tool = seen.tool[static_cast<std::size_t>(exercise.lift->role)];
+    const glm::dvec3& place_m = seen.target[exercise.target.size()].position_m;
+    return tool.grasping &&
+           glm::distance(tool.tip_m, place_m) < kComesAlong_m + exercise.lift->radius_m;
+}
+
+bool is_lifted(const Exercise& exercise, const Observation& seen) noexcept {
+    if (!exercise.lift)
+        return true;
+    const Lift& lift = *exercise.lift;
+    const glm::dvec3& place_m = seen.target[exercise.target.size()].position_m;
+    return glm::distance(place_m, lift.at_m) > 0.5 * glm::distance(lift.to_m, lift.at_m);
+}
+
 void observe_tubes(Progress& progress, const Exercise& exercise, const Observation& seen) {
     note_tools(progress, exercise, seen);
     const std::size_t tubes = tubes_of(exercise, seen);

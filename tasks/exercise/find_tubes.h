@@ -20,4 +20,9 @@ bool tube_seen(const Exercise& exercise, const Observation& seen, std::size_t tu
 bool tube_pointed(const Exercise& exercise, const Observation& seen, std::size_t tube,
                   int tool) noexcept;
 
+/// The lifting tool holds tissue, and the place to lift comes along with it.
+bool is_held_to_lift(const Exercise& exercise, const Observation& seen) noexcept;
+/// That place is more than half-way up. True where nothing has to be lifted.
+bool is_lifted(const Exercise& exercise, const Observation& seen) noexcept;
+
 } // namespace tasks

@@ -79,12 +79,23 @@ std::uint32_t found_tubes(const Progress& progress) noexcept {
     return found;
 }
 
+namespace {
+
+// Of the tube that is nearest to being found: they come in any order.
+int longest_good_ticks(const Progress& progress) noexcept {
+    int most = 0;
+    for (const TubeSearch& tube : progress.tube)
+        most = tube.found ? most : std::max(most, tube.good_ticks);
+    return most;
+}
+
+} // namespace
+
 double share_at_next(const Progress& progress, const Exercise& exercise) noexcept {
     if (exercise.kind == ExerciseKind::follow_path)
         return progress.path.begin_tick < 0 ? 0.0 : progress.path_u - std::floor(progress.path_u);
     if (exercise.kind == ExerciseKind::find_tubes)
-        return progress.tube[std::min<std::size_t>(progress.next, kMaxTargets - 1)].good_ticks *
-               kTick_s / exercise.hold_s;
+        return longest_good_ticks(progress) * kTick_s / exercise.hold_s;
     return progress.held_ticks * kTick_s / exercise.hold_s;
 }
 

@@ -40,9 +40,7 @@ bool CameraHand::is_lifted(const HandSight& sight) {
     const ToolObservation& tool = sight.now.tool[static_cast<std::size_t>(exercise_.lift->role)];
     const bool still = glm::distance(tool.tip_m, lifter_m_) < kStill_mps * kTick_s;
     lifter_m_ = tool.tip_m;
-    const Lift& lift = *exercise_.lift;
-    const glm::dvec3& place_m = sight.now.target[exercise_.target.size()].position_m;
-    const bool up = glm::distance(place_m, lift.at_m) > 0.5 * glm::distance(lift.to_m, lift.at_m);
+    const bool up = tasks::is_lifted(exercise_, sight.now);
     still_ticks_ = up ? still_ticks_ + (still ? 1 : 0) : 0;
     return still_ticks_ * kTick_s > kStill_s;
 }

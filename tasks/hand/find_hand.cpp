@@ -24,10 +24,9 @@ constexpr double kDepthSeen = 0.5;     // share of the depth error that a second
 constexpr double kDeeper_m = 2e-3;     // past the first touch, so that the jaws have something
 constexpr double kNotFound_m = 12e-3;  // past the place where the tissue should have been
 constexpr double kJaw_s = 0.3;
-constexpr double kComesAlong_m = 12e-3; // what is held stays so near to the tip
-constexpr double kPointShare = 0.75;    // of the radius: how near people point, without touching
-constexpr double kGoodShare = 0.9;      // of the radius: near enough, no correction
-constexpr double kNotice_s = 1.0;       // pointing well and nothing happens: something is wrong
+constexpr double kPointShare = 0.75; // of the radius: how near people point, without touching
+constexpr double kGoodShare = 0.9;   // of the radius: near enough, no correction
+constexpr double kNotice_s = 1.0;    // pointing well and nothing happens: something is wrong
 constexpr double kGiveUp_s = 8.0;
 constexpr double kMostPull = 0.7; // of the force limit: no further
 constexpr int kMaxCorrections = 4;
@@ -63,13 +62,7 @@ FindHand::Percept FindHand::percept_of(const HandSight& sight) const {
         now.force_n[t] = glm::length(sight.now.tool[t].force_n);
         now.touching[t] = sight.now.tool[t].touching;
     }
-    if (exercise_.lift) {
-        const ToolObservation& tool =
-            sight.now.tool[static_cast<std::size_t>(exercise_.lift->role)];
-        const glm::dvec3& place = sight.now.target[exercise_.target.size()].position_m;
-        now.holding = tool.grasping &&
-                      glm::distance(tool.tip_m, place) < kComesAlong_m + exercise_.lift->radius_m;
-    }
+    now.holding = is_held_to_lift(exercise_, sight.now);
     now.found = sight.found;
     now.done = sight.done;
     return now;
