@@ -63,12 +63,15 @@ struct TissueAnswer {
     TissueSeen seen;
 };
 
+enum class ScopeHolder : std::uint8_t { mount, assistant, person };
+
 /// The endoscope in one millisecond.
 struct ScopeNow {
     tasks::View view;
     glm::dvec3 port_m{0.0}; // where it comes in; the eye itself if the scene's picture is fixed
     double camera_rad = 0.0, optic_rad = 0.0; // turns of camera head and optic
     double horizon_rad = 0.0;
+    ScopeHolder holder = ScopeHolder::mount;
     bool present = false; // false: the scene's picture is fixed
     bool faulted = false;
 };
@@ -86,6 +89,7 @@ struct ToolsNow {
     std::array<double, kTools> felt_share{}; // ramp and limits: 0 limp .. 1 full force
     std::array<bool, kTools> faulted{};
     ScopeNow scope;
+    ClearRays clear_rays{}; // of the newest answer taken
 };
 
 /// The surfaces as they are drawn; vectors sized once at start.

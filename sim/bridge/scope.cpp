@@ -42,10 +42,16 @@ tasks::ScopeTrace read_scope(ScopeInstrument& scope) noexcept {
     out.optic_counts = scope.sample.optic_counts;
     out.flags =
         static_cast<std::uint8_t>(kPresent | (fault != haptics::DeviceFault::none ? kFaulted : 0) |
-                                  (!scope.device        ? kMount
-                                   : scope.by_assistant ? kAssistant
-                                                        : 0));
+                                  (scope.holder == ScopeHolder::mount       ? kMount
+                                   : scope.holder == ScopeHolder::assistant ? kAssistant
+                                                                            : 0));
     return out;
+}
+
+ScopeHolder holder_of(const tasks::ScopeTrace& counts) noexcept {
+    return counts.flags & kMount       ? ScopeHolder::mount
+           : counts.flags & kAssistant ? ScopeHolder::assistant
+                                       : ScopeHolder::person;
 }
 
 ScopeNow look_through(const ScopeInstrument& scope, const tasks::ScopeTrace& counts) noexcept {
@@ -67,6 +73,7 @@ ScopeNow look_through(const ScopeInstrument& scope, const tasks::ScopeTrace& cou
     now.view.up = picture.up;
     now.port_m = optics.trocar.fulcrum_m;
     now.horizon_rad = haptics::horizon_rad(picture, optics.up);
+    now.holder = holder_of(counts);
     now.present = true;
     now.faulted = (counts.flags & kFaulted) != 0;
     return now;

@@ -21,9 +21,9 @@ struct SceneScope {
 };
 
 struct ScopeInstrument {
-    bool fitted = false;               // false: the scene's picture is fixed
-    bool by_assistant = false;         // the device is moved by a scripted hand
-    haptics::Device* device = nullptr; // not owned; nullptr: on a mount
+    bool fitted = false; // false: the scene's picture is fixed
+    ScopeHolder holder = ScopeHolder::mount;
+    haptics::Device* device = nullptr; // not owned; nullptr: stays as the scene starts
     SceneScope scene;
     glm::dvec3 origin_m{0.0}; // world place of the handle at the start
     double metres_per_count = 20e-6;
@@ -36,6 +36,9 @@ ScopeInstrument make_scope(const std::optional<SceneScope>& scope, const tasks::
 
 /// Reads the device; never waits. A faulty one keeps its last place.
 tasks::ScopeTrace read_scope(ScopeInstrument& scope) noexcept;
+
+/// Who held it, as its flags say.
+ScopeHolder holder_of(const tasks::ScopeTrace& counts) noexcept;
 
 /// What is seen through it.
 ScopeNow look_through(const ScopeInstrument& scope, const tasks::ScopeTrace& counts) noexcept;

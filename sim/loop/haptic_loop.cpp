@@ -118,6 +118,7 @@ void haptic_tick(HapticRig& rig, Exchange& exchange, tasks::TickTrace& trace) no
 
     trace.tick = tick;
     trace.adopted_step = take_answer(rig, exchange);
+    now.clear_rays = rig.seen.clear_rays;
     const haptics::CouplingResult result = couple(rig, exchange, tick);
     rig.slid_off_patch += static_cast<std::uint64_t>(result.slid_off);
 

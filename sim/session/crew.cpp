@@ -47,15 +47,25 @@ void move_scope(Crew& crew, const HapticRig& rig, const tasks::HandGoals& goals,
         hold_scope(rig.scope, goals.scope, *crew.scope);
         return;
     }
+    tasks::ScopeGoal assistant; // is told in every tick, so that he knows what he gets back
+    if (crew.camera)
+        assistant = crew.camera->tick(sight);
     const PointerGoals& person = crew.pointer;
-    if (person.scope_held) {
+    if (person.scope_held)
         hold_scope(rig.scope,
                    haptics::EndoscopeAim{person.scope_tip_m, person.camera_rad, person.optic_rad},
                    *crew.scope);
-        return;
-    }
-    if (crew.camera)
-        hold_scope(rig.scope, crew.camera->tick(sight), *crew.scope);
+    else if (crew.camera)
+        hold_scope(rig.scope, assistant, *crew.scope);
+}
+
+// A mount keeps it where it was left.
+ScopeHolder holder_now(const Crew& crew, const tasks::HandGoals& goals) {
+    if (!crew.scope)
+        return ScopeHolder::mount;
+    if (goals.scope.given || crew.pointer.scope_held)
+        return ScopeHolder::person;
+    return crew.camera ? ScopeHolder::assistant : ScopeHolder::mount;
 }
 
 } // namespace
@@ -78,9 +88,16 @@ Crew make_mouse_crew(const Scene& scene, HapticRig& rig) {
         crew.mouse[i] = std::make_unique<haptics::MouseDevice>(glm::dvec3{0.0});
         rig.instrument[i].device = crew.mouse[i].get();
         rig.instrument[i].metres_per_count = crew.mouse[i]->info().metres_per_count;
-        crew.pointer.tip_m[i] = scene.tool[i].start_tip_m;
     }
+    crew.pointer.tip_m = start_tips(scene);
     return crew;
+}
+
+std::array<glm::dvec3, kTools> start_tips(const Scene& scene) {
+    std::array<glm::dvec3, kTools> start;
+    for (int i = 0; i < kTools; ++i)
+        start[i] = scene.tool[i].start_tip_m;
+    return start;
 }
 
 void give_scope(Crew& crew, HapticRig& rig) {
@@ -98,7 +115,7 @@ void crew_tick(Crew& crew, HapticRig& rig, const tasks::HandSight& sight) {
     else if (!std::holds_alternative<std::monostate>(crew.hand))
         move_virtual_crew(crew, rig, goals);
     move_scope(crew, rig, goals, sight);
-    rig.scope.by_assistant = crew.scope && !goals.scope.given && !crew.pointer.scope_held;
+    rig.scope.holder = holder_now(crew, goals);
     for (const auto& device : crew.device)
         if (device)
             device->step(kTick_s);

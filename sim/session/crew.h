@@ -36,6 +36,9 @@ Crew make_crew(const Scene& scene, HapticRig& rig);
 /// Crew::pointer.
 Crew make_mouse_crew(const Scene& scene, HapticRig& rig);
 
+/// Where the scene starts the tips.
+std::array<glm::dvec3, kTools> start_tips(const Scene& scene);
+
 /// Takes the endoscope off its mount: from now on the hand, the assistant or the person holds it.
 void give_scope(Crew& crew, HapticRig& rig);
 

@@ -24,6 +24,19 @@ std::vector<haptics::RecordedRead> reads_of(const Recording& recording, int tool
     return reads;
 }
 
+std::vector<haptics::RecordedRead> scope_reads_of(const Recording& recording, std::size_t from) {
+    std::vector<haptics::RecordedRead> reads;
+    for (std::size_t i = from; i < recording.ticks.size(); ++i) {
+        const tasks::ScopeTrace& t = recording.ticks[i].scope;
+        reads.push_back(
+            {.sample = {.counts = t.counts,
+                        .roll_counts = t.camera_counts,
+                        .optic_counts = t.optic_counts},
+             .fault = (t.flags & 4) ? haptics::DeviceFault::timeout : haptics::DeviceFault::none});
+    }
+    return reads;
+}
+
 } // namespace
 
 Recording join(const std::vector<tasks::Chunk>& chunks) {
@@ -42,6 +55,11 @@ Replayer::Replayer(Session& session, const Recording& recording, std::size_t fro
         if (!read_[i].empty())
             device_[i] = std::make_unique<haptics::ReplayDevice>(haptics::DeviceInfo{}, read_[i]);
         session.haptics.instrument[i].device = device_[i].get();
+    }
+    if (session.haptics.scope.fitted) {
+        scope_read_ = scope_reads_of(recording, from);
+        scope_ = std::make_unique<haptics::ReplayDevice>(haptics::DeviceInfo{}, scope_read_);
+        session.haptics.scope.device = scope_.get();
     }
     if (from == 0 || from >= recording.ticks.size())
         return;
@@ -71,6 +89,7 @@ const tasks::TickTrace& Replayer::tick(Attempt* fold) {
     Exchange& exchange = *session_.exchange;
     if (take_steps(recording_.ticks[next_], fold))
         exchange.answers.publish();
+    session_.haptics.scope.holder = holder_of(recording_.ticks[next_].scope);
     haptic_tick(session_.haptics, exchange, trace_);
     past_[static_cast<std::size_t>(trace_.tick) % kRemembered] = exchange.tools.latest();
     if (fold)

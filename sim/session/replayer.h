@@ -34,6 +34,8 @@ class Replayer {
     std::size_t next_, next_step_ = 0;
     std::array<std::vector<haptics::RecordedRead>, kTools> read_;
     std::array<std::unique_ptr<haptics::ReplayDevice>, kTools> device_;
+    std::vector<haptics::RecordedRead> scope_read_; // empty: the picture was fixed
+    std::unique_ptr<haptics::ReplayDevice> scope_;
     std::vector<ToolsNow> past_;
     std::int64_t first_tick_ = 0;
     tasks::TickTrace trace_;

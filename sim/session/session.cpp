@@ -91,13 +91,6 @@ std::unique_ptr<Session> build(const RunOptions& options, LoadedScene scene,
     return session;
 }
 
-std::array<glm::dvec3, kTools> start_tips(const Scene& scene) {
-    std::array<glm::dvec3, kTools> start;
-    for (int i = 0; i < kTools; ++i)
-        start[i] = scene.tool[i].start_tip_m;
-    return start;
-}
-
 void give_skilled_hand(Session& session, const tasks::HandSkill& skill) {
     const auto start = start_tips(session.scene.scene);
     auto& hand = session.crew.hand;
@@ -211,7 +204,9 @@ tasks::HandSight sight_of(const Session& session, const tasks::TickTrace& trace,
                 observe_trace(session.haptics, trace, session.haptics.seen, session.rest_targets),
             .next_target = next_target,
             .found = found,
-            .done = done};
+            .done = done,
+            .held = session.crew.mouse[0] ? session.crew.pointer.held : std::array<bool, kTools>{},
+            .scope_held = session.crew.pointer.scope_held};
 }
 
 ProgressNow progress_now(const Attempt& attempt, const tasks::Exercise& exercise) {

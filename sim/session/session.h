@@ -51,6 +51,13 @@ struct Session {
 /// file, line, key, value. `with_hands` false: no crew.
 std::unique_ptr<Session> make_session(const RunOptions& options, bool with_hands = true);
 
+/// A person at mouse and keyboard, in a session without hands: he has all three tools, in
+/// find-tubes one of them and a scripted expert the others; a second expert has the endoscope if
+/// the exercise wants an assistant there, else it stays where it was left.
+void give_to_person(Session& session);
+/// The tool that mouse and keys move at first.
+inline constexpr int kFirstTool = static_cast<int>(tasks::Role::right);
+
 /// The session that a recorded attempt was made in: same scene, exercise, rate and coupling, from
 /// the texts in its row. `place`: the scene's directory; empty: the shipped one of that id. Throws
 /// if the organs are not the ones it was made with. What could be done once is not checked again.

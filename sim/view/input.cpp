@@ -60,6 +60,7 @@ UserInput map_keys(const KeyFrame& keys, Screen screen, bool widgets_have_keys) 
     input.move = {axis(keys, Key::a, Key::d), axis(keys, Key::s, Key::w),
                   axis(keys, Key::q, Key::e)};
     input.roll = axis(keys, Key::r, Key::t);
+    input.turn_optic = axis(keys, Key::z, Key::x);
     input.jaw_closed = keys.is_held(Key::space);
     return input;
 }

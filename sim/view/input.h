@@ -7,9 +7,10 @@
 //   P              pause, resume            Backspace  abandon (when paused)
 //   Enter          start (card), resume (paused), menu (score)    D  demonstration (card)
 //   Backspace      on a replay: back to the score (Esc too)
-//   Tab            next tool                Shift  slow and fine
+//   Tab            next tool, then the endoscope            Shift  slow and fine
 //   A D, S W, Q E  the active tool left right, down up, away nearer
 //   R T            roll left, right         Space or left button  close the jaw
+//   the endoscope: A D, S W turn the view, Q E in and out, R T the camera head, Z X the optic
 //   Ctrl+Q         quit                     Ctrl + and -  larger and smaller text
 //   M              sound off and on
 #pragma once
@@ -46,6 +47,7 @@ struct UserInput {
     bool fine = false;            // Shift is held: scale motion down
     glm::dvec3 move{0.0};         // keys held, -1..1 along picture right, picture up, to the camera
     double roll = 0.0;            // keys held, -1..1
+    double turn_optic = 0.0;      // keys held, -1..1
     bool jaw_closed = false;      // held
     glm::dvec2 mouse_px{0.0};     // pointer motion since the last draw, y up; 0 over buttons
     double wheel = 0.0;           // notches, positive away from the person
@@ -70,6 +72,8 @@ enum class Key {
     e,
     r,
     t,
+    z,
+    x,
     f,
     p,
     m,

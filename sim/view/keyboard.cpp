@@ -30,6 +30,8 @@ std::optional<Key> key_of(int glfw_key) noexcept {
                                               {GLFW_KEY_E, Key::e},
                                               {GLFW_KEY_R, Key::r},
                                               {GLFW_KEY_T, Key::t},
+                                              {GLFW_KEY_Z, Key::z},
+                                              {GLFW_KEY_X, Key::x},
                                               {GLFW_KEY_F, Key::f},
                                               {GLFW_KEY_P, Key::p},
                                               {GLFW_KEY_M, Key::m},

@@ -81,12 +81,15 @@ TEST_CASE("Held keys move the tool along the picture's axes, opposite keys cance
     CHECK(move({Key::a, Key::d, Key::w, Key::s, Key::q, Key::e}) == glm::dvec3(0));
     CHECK(map_keys(down({Key::t}), Screen::run).roll == 1.0);
     CHECK(map_keys(down({Key::r}), Screen::run).roll == -1.0);
+    CHECK(map_keys(down({Key::x}), Screen::run).turn_optic == 1.0);
+    CHECK(map_keys(down({Key::z}), Screen::run).turn_optic == -1.0);
+    CHECK(map_keys(down({Key::z, Key::x}), Screen::run).turn_optic == 0.0);
     CHECK(map_keys(down({Key::space}), Screen::run).jaw_closed);
     CHECK(map_keys(down({Key::shift}), Screen::run).fine);
 }
 
 TEST_CASE("Tools move and change on the run screen only") {
-    const KeyFrame keys = down({Key::w, Key::tab, Key::space, Key::t});
+    const KeyFrame keys = down({Key::w, Key::tab, Key::space, Key::t, Key::x});
     for (const Screen screen : kScreens) {
         const UserInput input = map_keys(keys, screen);
         const bool runs = screen == Screen::run;
@@ -94,6 +97,7 @@ TEST_CASE("Tools move and change on the run screen only") {
         CHECK(input.jaw_closed == runs);
         CHECK((input.move != glm::dvec3(0)) == runs);
         CHECK((input.roll != 0.0) == runs);
+        CHECK((input.turn_optic != 0.0) == runs);
     }
 }
 
