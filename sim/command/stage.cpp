@@ -1,6 +1,7 @@
 // sim/command/stage.cpp
 #include "sim/command/stage.h"
 
+#include "tasks/exercise/find_hint.h"
 #include "tasks/exercise/path_curve.h"
 
 #include <algorithm>
@@ -12,9 +13,7 @@ namespace sim {
 namespace {
 
 view::Role role_of(tasks::Role role) {
-    return role == tasks::Role::left    ? view::Role::left
-           : role == tasks::Role::right ? view::Role::right
-                                        : view::Role::assist;
+    return static_cast<view::Role>(role); // in the same order
 }
 
 std::vector<glm::vec3> single(const std::vector<glm::dvec3>& from) {
@@ -25,19 +24,37 @@ std::vector<glm::vec3> single(const std::vector<glm::dvec3>& from) {
     return to;
 }
 
-// A tip stays where the shaft can reach: between the port and the end of the shaft.
-glm::dvec3 reachable(const haptics::Trocar& trocar, const glm::dvec3& tip_m) {
-    const glm::dvec3 from = tip_m - trocar.fulcrum_m;
-    const double length = std::max(1e-6, glm::length(from));
-    const double allowed = std::clamp(length, trocar.min_insertion_m + 5e-3,
-                                      trocar.shaft_m - trocar.min_outside_m - 5e-3);
-    return trocar.fulcrum_m + from * (allowed / length);
+glm::dvec3 place_of(const std::array<std::int32_t, 3>& um) {
+    return 1e-6 * glm::dvec3{um[0], um[1], um[2]};
+}
+
+// What the exercise sees, as far as the next hint needs it: tools, endoscope, places.
+tasks::Observation observed(const ToolsNow& now, std::span<const view::TargetView> targets) {
+    tasks::Observation seen;
+    seen.view = now.scope.view;
+    seen.targets = static_cast<int>(targets.size());
+    for (std::size_t t = 0; t < targets.size(); ++t) {
+        seen.target[t].position_m = targets[t].position_m;
+        seen.target[t].clear_rays = now.clear_rays[t];
+    }
+    for (int i = 0; i < kTools; ++i) {
+        seen.tool[i].tip_m = now.tip[i].centre_m;
+        seen.tool[i].grasping = now.grasping[i];
+    }
+    return seen;
+}
+
+view::Camera camera_of(const tasks::View& seen) {
+    return {.eye_m = seen.eye_m,
+            .look_at_m = seen.eye_m + seen.forward,
+            .up = seen.up,
+            .field_of_view_deg = glm::degrees(seen.field_of_view_rad)};
 }
 
 } // namespace
 
 Stage::Stage(const Session& session, bool by_hand, int first_surface_id)
-    : session_(session), by_hand_(by_hand) {
+    : session_(session), by_hand_(by_hand), steering_(begin_steering(session)) {
     for (std::size_t b = 0; b < session.tissue.bodies.size(); ++b) {
         const Body& body = session.tissue.bodies[b];
         rest_m_.push_back(single(body.organ->surface.rest_m));
@@ -51,18 +68,13 @@ Stage::Stage(const Session& session, bool by_hand, int first_surface_id)
                                    .position_m = rest_m_[b],
                                    .normal = rest_normal_[b]});
     }
-    const tasks::View& seen = session.scene.scene.view;
-    frame_.camera = {.eye_m = seen.eye_m,
-                     .look_at_m = seen.eye_m + seen.forward,
-                     .up = seen.up,
-                     .field_of_view_deg = glm::degrees(seen.field_of_view_rad)};
-    frame_.force = {.band_min_n = session.exercise.force_min_n,
-                    .band_max_n = session.exercise.force_max_n,
+    frame_.camera = camera_of(session.scene.scene.view);
+    const bool banded = session.exercise.kind != tasks::ExerciseKind::find_tubes;
+    frame_.force = {.band_min_n = banded ? session.exercise.force_min_n : 0.0,
+                    .band_max_n = banded ? session.exercise.force_max_n : 0.0,
                     .limit_n = session.exercise.force_limit_n};
     frame_.time_limit_s = double(session.max_ticks) * kTick_s;
     frame_.felt = !by_hand;
-    for (int i = 0; i < kTools; ++i)
-        goals_.tip_m[i] = session.scene.scene.tool[i].start_tip_m;
 }
 
 void Stage::show_tools(const ToolsNow& now) {
@@ -71,8 +83,8 @@ void Stage::show_tools(const ToolsNow& now) {
         view::ToolView& to = frame_.tools[i];
         to.role = role_of(tool.role);
         to.present = true;
-        to.active = by_hand_ && i == active_;
-        to.assistant = by_hand_ && i != active_;
+        to.active = by_hand_ && i == steering_.active;
+        to.assistant = by_hand_ && !steering_.goals.held[i];
         to.fulcrum_m = tool.trocar.fulcrum_m;
         to.tip_radius_m = tool.tip_radius_m;
         if (now.tick < 0) {
@@ -92,6 +104,18 @@ void Stage::show_tools(const ToolsNow& now) {
     frame_.time_s = std::max(0.0, double(now.tick) * kTick_s);
 }
 
+void Stage::show_scope(const ToolsNow& now) {
+    view::ScopeView& to = frame_.scope;
+    to.present = session_.scene.scene.scope.has_value();
+    to.active = by_hand_ && steering_.active == kScopeActive;
+    if (now.tick < 0)
+        return;
+    frame_.camera = camera_of(now.scope.view);
+    to.assistant = now.scope.holder == ScopeHolder::assistant;
+    to.faulted = now.scope.faulted;
+    to.horizon_rad = now.scope.horizon_rad;
+}
+
 void Stage::show_targets(const TargetPlaces& target_um, const ProgressNow& progress) {
     frame_.targets.clear();
     for (std::size_t t = 0; t < session_.exercise.target.size(); ++t) {
@@ -102,13 +126,45 @@ void Stage::show_targets(const TargetPlaces& target_um, const ProgressNow& progr
         target.state = index < progress.next_target    ? view::TargetState::done
                        : index == progress.next_target ? view::TargetState::next
                                                        : view::TargetState::waiting;
-        for (int axis = 0; axis < 3; ++axis)
-            target.position_m[axis] = target_um[t][axis] * 1e-6;
+        target.position_m = place_of(target_um[t]);
         target.normal = session_.rest_targets[t].normal;
         target.radius_m = session_.exercise.radius_m;
         target.hold_share = index == progress.next_target ? progress.hold_share : 0.0;
         frame_.targets.push_back(target);
     }
+}
+
+// Tubes in any order, the place to lift until it is up, and what is missing now.
+void Stage::show_search(const ToolsNow& now, const TargetPlaces& target_um,
+                        const ProgressNow& progress) {
+    const tasks::Exercise& exercise = session_.exercise;
+    if (exercise.kind != tasks::ExerciseKind::find_tubes)
+        return;
+    const std::size_t tubes = exercise.target.size();
+    if (exercise.lift) {
+        view::TargetView lift;
+        lift.role = role_of(exercise.lift->role);
+        lift.lift = true;
+        lift.position_m = place_of(target_um[tubes]);
+        lift.normal = session_.rest_targets[tubes].normal;
+        frame_.targets.push_back(lift);
+    }
+    const tasks::Observation seen = observed(now, frame_.targets);
+    const tasks::FindHint hint = tasks::find_hint(exercise, seen, progress.found);
+    for (std::size_t t = 0; t < frame_.targets.size(); ++t) {
+        view::TargetView& target = frame_.targets[t];
+        target.buried = true;
+        const bool next = target.lift ? hint.lift : !hint.lift && int(t) == hint.tube;
+        target.state = !target.lift && (progress.found & (1U << t)) ? view::TargetState::done
+                       : next                                       ? view::TargetState::next
+                                                                    : view::TargetState::waiting;
+        target.radius_m = exercise.mark_radius_m;
+        target.hold_share = next && !target.lift ? progress.hold_share : 0.0;
+    }
+    if (exercise.lift && !hint.lift && tasks::is_lifted(exercise, seen))
+        frame_.targets.pop_back();
+    frame_.hint = hint.words;
+    frame_.ring_share = hint.tube >= 0 && !hint.lift ? exercise.centre_share : 0.0;
 }
 
 // Of the points of a path only the first, the last and the one that comes now keep their marks.
@@ -155,8 +211,12 @@ const view::ViewFrame& Stage::frame(Exchange& exchange) {
         }
     }
     progress_ = exchange.progress_seen.latest();
-    show_tools(exchange.tools_seen.latest());
-    show_targets(surface.step >= 0 ? surface.target_um : session_.rest_target_um, progress_);
+    const ToolsNow& tools = exchange.tools_seen.latest();
+    show_tools(tools);
+    show_scope(tools);
+    const TargetPlaces& places = surface.step >= 0 ? surface.target_um : session_.rest_target_um;
+    show_targets(places, progress_);
+    show_search(tools, places, progress_);
     show_path(progress_);
     frame_.errors = progress_.errors;
     frame_.forces_on = !exchange.zero_forces.load();
@@ -172,20 +232,8 @@ const view::ViewFrame& Stage::frame(Exchange& exchange) {
 void Stage::steer(const view::UserInput& input, double frame_s, Exchange& exchange) {
     if (!by_hand_)
         return;
-    if (input.switch_tool)
-        active_ = (active_ + 1) % kTools;
-    const tasks::View& seen = session_.scene.scene.view;
-    const glm::dvec3 right = glm::cross(seen.forward, seen.up);
-    constexpr double kMetresPerPixel = 0.15e-3, kMetresPerNotch = 2e-3, kKeySpeed_mps = 0.036;
-    const double pace = input.fine ? 0.25 : 1.0;
-    const glm::dvec3 keys = kKeySpeed_mps * std::clamp(frame_s, 0.0, 0.1) * input.move;
-    const glm::dvec3 offset = (kMetresPerPixel * input.mouse_px.x + keys.x) * right +
-                              (kMetresPerPixel * input.mouse_px.y + keys.y) * seen.up +
-                              (kMetresPerNotch * input.wheel - keys.z) * seen.forward;
-    goals_.tip_m[active_] =
-        reachable(session_.scene.scene.tool[active_].trocar, goals_.tip_m[active_] + pace * offset);
-    goals_.jaw[active_] = input.jaw_closed || input.button[0] ? 1.0 : 0.0;
-    exchange.pointer.back() = goals_;
+    sim::steer(steering_, input, exchange.tools_seen.latest(), frame_s);
+    exchange.pointer.back() = steering_.goals;
     exchange.pointer.publish();
 }
 

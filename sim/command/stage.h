@@ -3,7 +3,7 @@
 // turns mouse and keys into places for the tips. Called from the render thread only.
 #pragma once
 
-#include "sim/session/session.h"
+#include "sim/session/steering.h"
 #include "sim/view/window.h"
 
 namespace sim {
@@ -24,7 +24,10 @@ class Stage {
 
   private:
     void show_tools(const ToolsNow& now);
+    void show_scope(const ToolsNow& now);
     void show_targets(const TargetPlaces& target_um, const ProgressNow& progress);
+    void show_search(const ToolsNow& now, const TargetPlaces& target_um,
+                     const ProgressNow& progress);
     void show_path(const ProgressNow& progress);
 
     const Session& session_;
@@ -33,8 +36,7 @@ class Stage {
     view::ViewFrame frame_;
     std::vector<std::vector<glm::vec3>> rest_m_;
     std::vector<std::vector<glm::vec3>> rest_normal_;
-    PointerGoals goals_;
-    int active_ = 1; // the right hand's tool
+    Steering steering_;
     ProgressNow progress_;
 };
 

@@ -2,6 +2,7 @@
 // trocar train: the window. Menu, instruction card, the expert's demonstration, the attempt, the
 // score. The loops run on their own threads; this one draws and never makes them wait.
 #include "sim/command/commands.h"
+#include "sim/command/exercise_words.h"
 #include "sim/command/score_model.h"
 #include "sim/command/stage.h"
 #include "sim/io/files.h"
@@ -42,13 +43,7 @@ class Trainer {
         for (const std::string& name : names_) {
             const auto path = find_exercise(place, name);
             exercises_.push_back(tasks::parse_exercise(read_text(path), path.string()));
-            screens_.menu.exercises.push_back(
-                {.title = exercises_.back().title,
-                 .hands = "left, right, assist",
-                 .summary = fmt::format("{} {}", exercises_.back().target.size(),
-                                        exercises_.back().kind == tasks::ExerciseKind::follow_path
-                                            ? "points of a path"
-                                            : "targets")});
+            screens_.menu.exercises.push_back(menu_entry(exercises_.back()));
         }
         for (const auto& t : logbook_.trainees()) {
             trainee_ids_.push_back(t.id);
@@ -109,18 +104,8 @@ class Trainer {
 
     void show_card(int index) {
         chosen_ = std::clamp(index, 0, static_cast<int>(exercises_.size()) - 1);
-        const tasks::Exercise& e = exercises_[chosen_];
         screens_.screen = view::Screen::card;
-        screens_.card = {
-            .title = e.title,
-            .text = e.card,
-            .limits = {
-                fmt::format("Force {:.1f} to {:.1f} N, error above {:.1f} N", e.force_min_n,
-                            e.force_max_n, e.force_limit_n),
-                e.kind == tasks::ExerciseKind::follow_path
-                    ? fmt::format("Stay within {:.0f} mm of the path", 1e3 * e.radius_m)
-                    : fmt::format("Hold {:.1f} s within {:.0f} mm", e.hold_s, 1e3 * e.radius_m),
-                fmt::format("Time limit {:.0f} s", e.time_limit_s)}};
+        screens_.card = card_model(exercises_[chosen_]);
     }
 
     // One attempt, by the person or as the expert's demonstration, with its own threads.
@@ -134,7 +119,7 @@ class Trainer {
             options.trainee = trainee_ids_[screens_.menu.trainee];
         const std::unique_ptr<Session> session = make_session(options, demo);
         if (!demo)
-            session->crew = make_mouse_crew(session->scene.scene, session->haptics);
+            give_to_person(*session);
         session->exchange->surface_wanted = true;
         session->keep_recording = true;
         Stage stage(*session, !demo, next_surface_id_);

@@ -49,6 +49,7 @@ struct World {
         frame.tools[1].force_n = {0.0, 0.0, 2.13};
         frame.tools[2].force_n = {0.1, 0.2, 0.42};
         frame.tools[2].touching = frame.tools[2].assistant = true;
+        frame.scope = {.present = true, .assistant = true, .horizon_rad = -0.35};
         frame.time_s = 65.4;
         frame.time_limit_s = 180.0;
         frame.errors = 2;
@@ -72,8 +73,10 @@ Screens pages() {
         "Touch the numbered points in order. Colour and letter name the tool. Press gently and "
         "hold until the point is marked, then go on to the next. Keep the tips in the picture, "
         "touch nothing else, and do not press hard.",
+        {},
         {"Force 0.1 to 1.0 N, held for 0.3 s", "An error above 2.0 N", "Three minutes"},
         true};
+    s.card.roles = {Role::left, Role::right, Role::assist, Role::scope};
     s.score.title = "Touch the points: B. Resident";
     s.score.completed = true;
     s.score.valid = true;

@@ -17,8 +17,8 @@
 namespace view {
 
 /// In the order of tool indices everywhere else. Colour, shape and letter on the screen:
-/// left: blue circle L, right: orange triangle R, assist: teal square A.
-enum class Role : std::uint8_t { left, right, assist };
+/// left: blue circle L, right: orange triangle R, assist: teal square A, scope: violet diamond E.
+enum class Role : std::uint8_t { left, right, assist, scope };
 inline constexpr int kTools = 3;
 
 /// A deforming surface; triangles are counter-clockwise seen from outside, their backs not drawn.
@@ -51,16 +51,27 @@ struct ToolView {
     double felt_share = 1.0; // 0 limp .. 1 full force reaches the hand
 };
 
+/// The endoscope, through which the picture is seen; if it is not held it is on a mount.
+struct ScopeView {
+    bool present = false;   // false: the picture is fixed, no panel
+    bool active = false;    // mouse and keys move it
+    bool assistant = false; // moved by the scripted assistant
+    bool faulted = false;
+    double horizon_rad = 0.0; // turn of the picture against a level one
+};
+
 enum class TargetState : std::uint8_t { waiting, next, done };
 
 struct TargetView {
-    int number = 1;
+    int number = 1; // ignored by a place to lift
     Role role = Role::left;
     TargetState state = TargetState::waiting;
     glm::dvec3 position_m{0.0}; // on the surface now
     glm::dvec3 normal{0.0, 0.0, 1.0};
     double radius_m = 3e-3;  // tolerance of the exercise; drawn never smaller than 3 mm
     double hold_share = 0.0; // 0..1 of the holding time, for the next target
+    bool lift = false;       // a place to lift: the role's letter below an arrow, not a number
+    bool buried = false;     // lies under tissue that will be moved: nothing shows it through
 };
 
 /// A curve on the surface that has to be drawn along: places in order, close enough to each other
@@ -79,7 +90,7 @@ struct Camera {
     double field_of_view_deg = 55.0; // vertical
 };
 
-/// What the exercise allows; the force bars show it.
+/// What the exercise allows; the force bars show it. A band of no width is none.
 struct ForceLimits {
     double band_min_n = 0.1;
     double band_max_n = 1.0;
@@ -92,10 +103,13 @@ enum class Recorder : std::uint8_t { off, recording, fault };
 struct ViewFrame {
     std::vector<SurfaceView> surfaces;
     std::array<ToolView, kTools> tools;
+    ScopeView scope;
     std::vector<TargetView> targets;
     PathView path;
     Camera camera;
     ForceLimits force;
+    double ring_share = 0.0;   // radius of the zone that counts, of the picture's height; 0: none
+    std::string hint;          // what to do now, beside the next target; empty: its tool
     double time_s = 0.0;       // of the attempt: the timer, and the beat of the pulsing ring
     double time_limit_s = 0.0; // 0: none shown
     int errors = 0;

@@ -1,6 +1,10 @@
 // sim/view/hud.cpp
-// Drawn straight into the background list: nothing here takes the pointer or the keyboard.
+// Drawn straight into the background list: nothing here takes the pointer or the keyboard. Panels
+// are in hud_instruments.cpp.
 #include "sim/view/hud.h"
+
+#include "sim/view/hud_parts.h"
+#include "sim/view/lens.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,19 +13,6 @@
 
 namespace view {
 namespace {
-
-struct Pen {
-    ImDrawList& list;
-    const Fonts& fonts;
-    float em, width, height; // body text height and window, pixels
-
-    /// Large letters in a small window: what stands side by side goes below one another.
-    bool narrow() const { return width < 42.0F * em; }
-};
-
-void panel(const Pen& pen, ImVec2 from, ImVec2 to) {
-    pen.list.AddRectFilled(from, to, ink::panel, 6.0F);
-}
 
 void centred(const Pen& pen, ImFont* font, float x, float y, ImU32 colour, std::string_view text) {
     draw_text(pen.list, font, {x - 0.5F * text_size(font, text).x, y}, colour, text);
@@ -37,13 +28,25 @@ void draw_clock(const Pen& pen, const ViewFrame& frame) {
                   "/ " + clock_text(frame.time_limit_s).substr(0, 4));
 }
 
+/// Two lines at most beside the badge, in the middle of the panel's height.
+void draw_hint(const Pen& pen, float left, float right, float top, const std::string& hint) {
+    ImFont* const font = pen.fonts.body;
+    const float tall =
+        font->CalcTextSizeA(font->FontSize, right - left, right - left, hint.c_str()).y;
+    pen.list.AddText(font, font->FontSize, {left, top + 1.3F * pen.em - 0.5F * tall}, ink::text,
+                     hint.c_str(), nullptr, right - left);
+}
+
 void draw_next(const Pen& pen, const ViewFrame& frame) {
-    const float em = pen.em, x = 0.5F * pen.width, half = 8.0F * em;
+    const float em = pen.em, x = 0.5F * pen.width;
+    const float half = frame.hint.empty() ? 8.0F * em : 11.5F * em;
     const float top = pen.narrow() ? 4.0F * em : em;
     const auto is_next = [](const TargetView& t) { return t.state == TargetState::next; };
     const auto next = std::find_if(frame.targets.begin(), frame.targets.end(), is_next);
-    const auto done = std::count_if(frame.targets.begin(), frame.targets.end(),
-                                    [](const auto& t) { return t.state == TargetState::done; });
+    const auto is_done = [](const TargetView& t) { return t.state == TargetState::done; };
+    const auto done = std::count_if(frame.targets.begin(), frame.targets.end(), is_done);
+    const auto all = std::count_if(frame.targets.begin(), frame.targets.end(),
+                                   [](const TargetView& t) { return !t.lift; });
     panel(pen, {x - half, top}, {x + half, top + 2.6F * em});
     if (next == frame.targets.end()) {
         centred(pen, pen.fonts.large, x, top + 0.6F * em, ink::text,
@@ -51,15 +54,28 @@ void draw_next(const Pen& pen, const ViewFrame& frame) {
         return;
     }
     draw_badge(pen.list, {x - half + 1.8F * em, top + 1.3F * em}, 0.95F * em, next->role,
-               fmt::format("{}", next->number));
-    draw_text(pen.list, pen.fonts.large, {x - half + 3.4F * em, top + 0.6F * em}, ink::text,
-              fmt::format("{} tool", role_word(next->role)));
+               next->lift ? role_letter(next->role) : fmt::format("{}", next->number));
     const std::string share = frame.path.place_m.empty()
-                                  ? fmt::format("{} / {}", done, frame.targets.size())
+                                  ? fmt::format("{} / {}", done, all)
                                   : fmt::format("{:.0f} %", 100.0 * frame.path.done);
-    draw_text(pen.list, pen.fonts.body,
-              {x + half - 0.8F * em - text_size(pen.fonts.body, share).x, top + 0.8F * em},
-              ink::quiet, share);
+    const float right = x + half - 0.8F * em - text_size(pen.fonts.body, share).x;
+    if (frame.hint.empty())
+        draw_text(pen.list, pen.fonts.large, {x - half + 3.4F * em, top + 0.6F * em}, ink::text,
+                  role_name(next->role));
+    else
+        draw_hint(pen, x - half + 3.4F * em, right - 0.5F * em, top, frame.hint);
+    draw_text(pen.list, pen.fonts.body, {right, top + 0.8F * em}, ink::quiet, share);
+}
+
+/// What counts is within it. Dark beside light, so that it reads on any tissue.
+void draw_ring(const Pen& pen, const ViewFrame& frame) {
+    if (!(frame.ring_share > 0.0))
+        return;
+    const Lens lens = lens_of(static_cast<int>(pen.width), static_cast<int>(pen.height));
+    const ImVec2 middle(0.5F * pen.width, 0.5F * pen.height);
+    const float radius = middle.y * static_cast<float>(seen_radius(lens, 2.0 * frame.ring_share));
+    pen.list.AddCircle(middle, radius, IM_COL32(0, 0, 0, 120), 96, 3.5F);
+    pen.list.AddCircle(middle, radius, IM_COL32(255, 255, 255, 170), 96, 1.5F);
 }
 
 void draw_counters(const Pen& pen, const ViewFrame& frame) {
@@ -77,78 +93,6 @@ void draw_counters(const Pen& pen, const ViewFrame& frame) {
     if (!pen.narrow())
         draw_text(pen.list, pen.fonts.body, {dot.x + 0.7F * em, dot.y - 0.6F * em},
                   fault ? ink::warn : ink::quiet, fault ? "REC !" : "REC");
-}
-
-/// The bar spans 0 .. 1.25 limit: band in green, limit as a red mark, the force as a fill.
-void draw_bar(const Pen& pen, const ToolView& tool, const ForceLimits& limits, ImVec2 from,
-              float width) {
-    const float tall = 0.75F * pen.em;
-    const double full_n = 1.25 * std::max({limits.limit_n, limits.band_max_n, 1e-3});
-    const auto x_of = [&](double n) {
-        return from.x + width * static_cast<float>(std::clamp(n / full_n, 0.0, 1.0));
-    };
-    const double n = glm::length(tool.force_n);
-    const bool over = n > limits.limit_n, inside = n >= limits.band_min_n && n <= limits.band_max_n;
-    pen.list.AddRectFilled(from, {from.x + width, from.y + tall}, ink::track, 3.0F);
-    pen.list.AddRectFilled({x_of(limits.band_min_n), from.y},
-                           {x_of(limits.band_max_n), from.y + tall}, IM_COL32(52, 110, 62, 255));
-    const ImU32 fill = over ? ink::bad : inside ? ink::good : IM_COL32(214, 216, 218, 255);
-    pen.list.AddRectFilled({from.x, from.y + 0.22F * tall}, {x_of(n), from.y + 0.78F * tall}, fill,
-                           2.0F);
-    const float mark = x_of(limits.limit_n);
-    pen.list.AddLine({mark, from.y - 0.2F * pen.em}, {mark, from.y + tall + 0.2F * pen.em},
-                     ink::bad, 2.5F);
-    for (const double edge : {limits.band_min_n, limits.band_max_n})
-        pen.list.AddLine({x_of(edge), from.y}, {x_of(edge), from.y + tall}, ink::good, 1.5F);
-}
-
-std::string holder(const ViewFrame& frame, const ToolView& tool) {
-    if (tool.faulted)
-        return "device fault";
-    if (tool.assistant)
-        return "assistant";
-    if (!frame.felt || !frame.forces_on)
-        return "not felt"; // the frame already says which tool is yours
-    return tool.active ? "you" : "";
-}
-
-void draw_force(const Pen& pen, const ViewFrame& frame, const ToolView& tool, ImVec2 from,
-                ImVec2 to) {
-    const float em = pen.em;
-    panel(pen, from, to);
-    if (tool.active)
-        pen.list.AddRect(from, to, role_ink(tool.role), 6.0F, 0, 2.5F);
-    draw_badge(pen.list, {from.x + 1.6F * em, from.y + 1.9F * em}, 0.9F * em, tool.role,
-               role_letter(tool.role));
-    if (tool.touching) // what the tick says to the ear
-        pen.list.AddCircle({from.x + 1.6F * em, from.y + 1.9F * em}, 1.35F * em, ink::text, 32,
-                           0.12F * em);
-    const float left = from.x + 3.1F * em, right = to.x - 0.9F * em;
-    const std::string value = fmt::format("{:.2f} N", glm::length(tool.force_n));
-    const bool over = glm::length(tool.force_n) > frame.force.limit_n;
-    draw_text(pen.list, pen.fonts.large,
-              {right - text_size(pen.fonts.large, value).x, from.y + 0.35F * em},
-              over ? ink::bad : ink::text, value);
-    const bool below = right - left < 10.0F * em; // no room beside the number
-    draw_text(pen.list, pen.fonts.body, {left, from.y + (below ? 2.0F : 0.6F) * em},
-              tool.faulted ? ink::bad : ink::quiet, holder(frame, tool));
-    draw_bar(pen, tool, frame.force, {left, to.y - 1.35F * em}, right - left);
-}
-
-void draw_forces(const Pen& pen, const ViewFrame& frame) {
-    const float em = pen.em, gap = 0.8F * em, bottom = pen.height - 2.5F * em;
-    const auto here =
-        std::count_if(frame.tools.begin(), frame.tools.end(), [](auto& t) { return t.present; });
-    const float most = (pen.width - 2.0F * em + gap) / 3.0F - gap;
-    const float wide = std::min(most, 19.0F * em);
-    const float tall = wide < 14.0F * em ? 5.1F * em : 3.7F * em;
-    float x = 0.5F * (pen.width - static_cast<float>(here) * (wide + gap) + gap);
-    for (const ToolView& tool : frame.tools) {
-        if (!tool.present)
-            continue;
-        draw_force(pen, frame, tool, {x, bottom - tall}, {x + wide, bottom});
-        x += wide + gap;
-    }
 }
 
 void draw_messages(const Pen& pen, const ViewFrame& frame, float top_em) {
@@ -170,7 +114,8 @@ void draw_messages(const Pen& pen, const ViewFrame& frame, float top_em) {
     constexpr std::string_view text = "Forces are off.  F: on again";
     ImFont* const font = pen.narrow() ? pen.fonts.large : pen.fonts.title;
     const ImVec2 size = text_size(font, text);
-    const float x = 0.5F * pen.width, top = pen.height - (pen.narrow() ? 10.6F : 9.6F) * em;
+    const float above_em = !pen.narrow() ? 9.6F : frame.scope.present ? 13.6F : 10.6F;
+    const float x = 0.5F * pen.width, top = pen.height - above_em * em;
     panel(pen, {x - 0.5F * size.x - em, top}, {x + 0.5F * size.x + em, top + 2.8F * em});
     centred(pen, font, x, top + 1.4F * em - 0.5F * size.y, ink::warn, text);
 }
@@ -202,10 +147,11 @@ std::string clock_text(double seconds) {
 void draw_hud(const ViewFrame& frame, Screen screen, const Fonts& fonts) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     const Pen pen{*ImGui::GetBackgroundDrawList(), fonts, fonts.body->FontSize, window.x, window.y};
+    draw_ring(pen, frame);
     draw_clock(pen, frame);
     draw_next(pen, frame);
     draw_counters(pen, frame);
-    draw_forces(pen, frame);
+    draw_instruments(pen, frame);
     const float top_em = pen.narrow() ? 3.0F : 0.0F; // the next target stands in a second row
     const bool shown = screen == Screen::demo || screen == Screen::replay;
     const char* word = screen == Screen::demo ? "Demonstration" : "Replay";

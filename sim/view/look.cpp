@@ -43,8 +43,8 @@ Digits digits_of(const Fonts& fonts) {
     Digits digits;
     digits.texture = static_cast<GLuint>(
         reinterpret_cast<std::uintptr_t>(ImGui::GetIO().Fonts->TexID)); // as the backend made it
-    for (int i = 0; i < 10; ++i) {
-        const ImFontGlyph* g = fonts.title->FindGlyph(static_cast<ImWchar>('0' + i));
+    for (std::size_t i = 0; i < digits.glyph.size(); ++i) {
+        const ImFontGlyph* g = fonts.title->FindGlyph(static_cast<ImWchar>(kGlyphs[i]));
         const float tall = g->Y1 - g->Y0;
         digits.glyph[i] = {
             {g->U0, g->V1, g->U1, g->V0}, (g->X1 - g->X0) / tall, g->AdvanceX / tall};
@@ -82,11 +82,17 @@ ImU32 role_ink(Role role, float alpha) {
 }
 
 const char* role_letter(Role role) {
-    return role == Role::left ? "L" : role == Role::right ? "R" : "A";
+    constexpr std::array<const char*, 4> kLetters{"L", "R", "A", "E"};
+    return kLetters[static_cast<std::size_t>(role)];
 }
 
 const char* role_word(Role role) {
-    return role == Role::left ? "left" : role == Role::right ? "right" : "assist";
+    constexpr std::array<const char*, 4> kWords{"left", "right", "assist", "endoscope"};
+    return kWords[static_cast<std::size_t>(role)];
+}
+
+std::string role_name(Role role) {
+    return role == Role::scope ? "endoscope" : std::string(role_word(role)) + " tool";
 }
 
 ImVec2 text_size(ImFont* font, std::string_view text) {
@@ -112,6 +118,12 @@ void draw_badge(ImDrawList& list, ImVec2 centre, float radius_px, Role role,
         list.AddTriangleFilled(a, b, c, fill);
         list.AddTriangle(a, b, c, line, 1.5F);
         middle.y += 0.25F * r;
+    } else if (role == Role::scope) {
+        const float d = 1.25F * r;
+        const ImVec2 a(centre.x, centre.y - d), b(centre.x + d, centre.y);
+        const ImVec2 c(centre.x, centre.y + d), e(centre.x - d, centre.y);
+        list.AddQuadFilled(a, b, c, e, fill);
+        list.AddQuad(a, b, c, e, line, 1.5F);
     } else {
         const ImVec2 a(centre.x - 0.92F * r, centre.y - 0.92F * r),
             b(centre.x + 0.92F * r, centre.y + 0.92F * r);

@@ -6,6 +6,7 @@
 #include "sim/view/frame.h"
 #include "sim/view/picture.h"
 
+#include <string>
 #include <string_view>
 
 #include <imgui.h>
@@ -21,7 +22,7 @@ struct Fonts {
 /// Rebuilds the font atlas for this height of body text and uploads it. Falls back to the
 /// built-in face if the system has no DejaVu Sans.
 Fonts load_fonts(float body_px);
-/// Where the digits 0-9 of the title face lie in the atlas.
+/// Where the digits 0-9 and the letters of the roles lie in the atlas, in the title face.
 Digits digits_of(const Fonts& fonts);
 /// Colours, rounding and spacing for this height of body text.
 void set_look(float body_px);
@@ -34,8 +35,9 @@ inline constexpr ImU32 warn = IM_COL32(250, 200, 80, 255);
 } // namespace ink
 
 ImU32 role_ink(Role role, float alpha = 1.0F);
-const char* role_letter(Role role); // "L", "R", "A"
-const char* role_word(Role role);   // "left", "right", "assist"
+const char* role_letter(Role role); // "L", "R", "A", "E"
+const char* role_word(Role role);   // "left", "right", "assist", "endoscope"
+std::string role_name(Role role);   // "left tool", "endoscope"
 
 /// The role's shape, filled, with its text in the middle; `radius_px` as of the circle.
 void draw_badge(ImDrawList& list, ImVec2 centre, float radius_px, Role role, std::string_view text);

@@ -132,6 +132,26 @@ void draw_menu(const MenuModel& menu, const Fonts& fonts, bool fresh, UserInput&
     ImGui::End();
 }
 
+/// Side by side, as many as there is room for.
+void draw_roles(const std::vector<Role>& roles, const Fonts& fonts) {
+    const ImVec2 from = ImGui::GetCursorScreenPos();
+    const float em = ImGui::GetFontSize(), wide = ImGui::GetContentRegionAvail().x;
+    const float apart = 9.0F * em;
+    const int columns = std::max(1, static_cast<int>(wide / apart));
+    int at = 0;
+    for (const Role role : roles) {
+        const ImVec2 place(from.x + apart * static_cast<float>(at % columns),
+                           from.y + 1.8F * em * static_cast<float>(at / columns));
+        ImDrawList& list = *ImGui::GetWindowDrawList();
+        draw_badge(list, {place.x + em, place.y + 0.9F * em}, 0.72F * em, role, role_letter(role));
+        draw_text(list, fonts.body, {place.x + 2.2F * em, place.y + 0.4F * em}, ink::text,
+                  role_name(role));
+        ++at;
+    }
+    const int rows = (at + columns - 1) / columns;
+    ImGui::Dummy({wide, 1.8F * em * static_cast<float>(rows)});
+}
+
 void draw_card(const CardModel& card, const Fonts& fonts, bool fresh, UserInput& input) {
     begin_panel("card", 42.0F, 28.0F, fresh);
     heading(fonts, card.title);
@@ -142,23 +162,18 @@ void draw_card(const CardModel& card, const Fonts& fonts, bool fresh, UserInput&
     ImGui::TextWrapped("%s", card.text.c_str());
     ImGui::PopFont();
     ImGui::Spacing();
-    const ImVec2 row = ImGui::GetCursorScreenPos();
-    const float apart = std::min(9.0F * em, ImGui::GetContentRegionAvail().x / 3.0F);
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    for (const Role role : {Role::left, Role::right, Role::assist}) {
-        const float x = row.x + apart * static_cast<float>(role);
-        draw_badge(list, {x + em, row.y + 0.9F * em}, 0.72F * em, role, role_letter(role));
-        draw_text(list, fonts.body, {x + 2.2F * em, row.y + 0.4F * em}, ink::text,
-                  std::string(role_word(role)) + " tool");
-    }
-    ImGui::Dummy({3.0F * apart, 1.8F * em});
+    draw_roles(card.roles, fonts);
     ImGui::Spacing();
     for (const std::string& limit : card.limits)
         bullet(limit);
     ImGui::Spacing();
     quiet(
         "Mouse and keys: Tab changes the tool, W A S D Q E or the mouse move it, Space or the left "
-        "button closes its jaws. Jaws that close on tissue hold it until they open.");
+        "button closes its jaws. Jaws that close on tissue hold it until they open; closed jaws "
+        "stay closed when Tab goes on, until Space is pressed and released there again.");
+    if (std::find(card.roles.begin(), card.roles.end(), Role::scope) != card.roles.end())
+        quiet("Endoscope: mouse or W A S D turn the view, wheel or Q E go in and out, R T turn the "
+              "camera head, Z X the optic. What you do not hold is held for you.");
     ImGui::EndChild();
     if (button(fonts, "Start", true))
         input.action = Action::start;

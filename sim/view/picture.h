@@ -8,6 +8,7 @@
 #include "sim/view/lens.h"
 
 #include <map>
+#include <string_view>
 
 namespace view {
 
@@ -18,10 +19,13 @@ struct Glyph {
     float advance = 0.65F;
 };
 
-/// The digits 0-9 and the texture that holds them.
+/// What stands on marks: a number, or a role's letter in the order of Role.
+inline constexpr std::string_view kGlyphs = "0123456789LRAE";
+
+/// kGlyphs and the texture that holds them.
 struct Digits {
     GLuint texture = 0;
-    std::array<Glyph, 10> glyph{};
+    std::array<Glyph, kGlyphs.size()> glyph{};
 };
 
 class Picture {

@@ -7,8 +7,9 @@
 namespace view {
 namespace {
 
-constexpr float kRingReach = 2.25F; // half side of the square that holds the rings, in radii
-constexpr float kLift_m = 0.0035F;  // depth only
+constexpr float kRingReach = 2.25F;  // half side of the square that holds the rings, in radii
+constexpr float kLift_m = 0.0035F;   // depth only
+constexpr float kBuried_m = 0.0005F; // less than what lies over it is thick
 
 /// Axes of the mark: in the tangent plane, upright in the picture, turned at most 35 degrees from
 /// the camera so that the number stays readable.
@@ -29,11 +30,14 @@ Axes axes_of(const Camera& camera, const TargetView& target) {
     return {across, glm::cross(n, across)};
 }
 
-/// One or two digits, centred; a third does not fit and is left out.
-void set_number(const Program& program, const Digits& digits, int number, float height) {
+/// The role's letter, or one or two digits, centred; a third does not fit and is left out.
+void set_text(const Program& program, const Digits& digits, const TargetView& target,
+              float height) {
     std::array<glm::vec4, 2> uv{}, box{};
-    const int shown = number % 100, count = shown >= 10 ? 2 : 1;
-    const std::array<int, 2> digit{count == 2 ? shown / 10 : shown, shown % 10};
+    const int shown = target.lift ? 10 + static_cast<int>(target.role) : target.number % 100;
+    const int count = shown >= 10 && !target.lift ? 2 : 1;
+    const std::array<int, 2> digit{count == 2 ? shown / 10 : shown,
+                                   shown % 10}; // places in kGlyphs
     const float tall = count == 2 ? 0.78F * height : height;
     float advance = 0.0F;
     for (int i = 0; i < count; ++i)
@@ -67,14 +71,18 @@ void Picture::draw_target(const ViewFrame& frame, const TargetView& target, cons
     target_.set("centre_m", glm::vec3(target.position_m));
     target_.set("across_m", glm::vec3(radius_m * axes.across));
     target_.set("upward_m", glm::vec3(radius_m * axes.upward));
-    target_.set("reach", next ? kRingReach : target.role == Role::right ? 1.70F : 1.10F);
+    target_.set("reach", next || target.lift          ? kRingReach
+                         : target.role == Role::right ? 1.70F
+                                                      : 1.10F);
     target_.set("shape", static_cast<int>(target.role));
     target_.set("base", base);
     target_.set("ink", done ? glm::vec3(0.80F) : glm::vec3(1.0F));
     target_.set("opacity", opacity);
     target_.set("ring", next ? static_cast<float>(1.40 + 0.25 * beat) : 0.0F);
     target_.set("hold", next ? static_cast<float>(std::clamp(target.hold_share, 0.0, 1.0)) : 0.0F);
-    set_number(target_, digits, target.number, target.role == Role::right ? 1.00F : 1.15F);
+    target_.set("arrow", target.lift ? 1 : 0);
+    target_.set("lift_m", target.buried ? kBuried_m : kLift_m);
+    set_text(target_, digits, target, target.role == Role::right ? 1.00F : 1.15F);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
@@ -82,7 +90,6 @@ void Picture::draw_targets(const ViewFrame& frame, const Digits& digits, const g
     if (frame.targets.empty())
         return;
     see(target_, frame.camera, to_clip);
-    target_.set("lift_m", kLift_m);
     target_.set("font", 0);
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_2D, digits.texture);
@@ -91,7 +98,7 @@ void Picture::draw_targets(const ViewFrame& frame, const Digits& digits, const g
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     glDepthMask(GL_FALSE);
     for (const TargetView& target : frame.targets) // faint where something stands before it
-        if (target.state != TargetState::done) {
+        if (target.state != TargetState::done && !target.buried) {
             glDepthFunc(GL_GREATER);
             draw_target(frame, target, digits, true);
         }

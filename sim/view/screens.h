@@ -3,6 +3,8 @@
 // the train command, drawn by Window::draw(). All texts UTF-8 in Latin-1's range.
 #pragma once
 
+#include "sim/view/frame.h"
+
 #include <string>
 #include <vector>
 
@@ -26,6 +28,7 @@ struct MenuModel {
 struct CardModel {
     std::string title;
     std::string text;                // instructions, wrapped here
+    std::vector<Role> roles;         // that it uses
     std::vector<std::string> limits; // "Force 0.1 to 1.0 N", one per line
     bool demo_available = true;
 };

@@ -208,6 +208,7 @@ void main() {
 const char* const target_fragment = R"(
 in vec2 at;
 uniform int shape;           // 0 circle, 1 triangle, 2 square
+uniform int arrow;           // 1: two of them over the shape, upward
 uniform vec3 base;
 uniform vec3 ink;            // of the number
 uniform float opacity;
@@ -248,6 +249,13 @@ void main() {
         float share = atan(-at.x, -at.y) / 6.2831853 + 0.5;
         float arc = clamp(1.0 - abs(r - 1.85) / (0.16 + 0.7 * px), 0.0, 1.0);
         sum = mix(sum, vec4(0.35, 1.0, 0.45, 1.0), hold > 0.0 && share <= hold ? arc : 0.0);
+    }
+    if (arrow == 1) {
+        for (int i = 0; i < 2; ++i) {
+            float y = at.y - (1.50 + 0.38 * float(i)) + 0.7 * abs(at.x);
+            float stroke = clamp(1.0 - (abs(y) - 0.07) / (2.0 * px), 0.0, 1.0);
+            sum = mix(sum, vec4(1.0), abs(at.x) < 0.62 ? stroke : 0.0);
+        }
     }
     sum.a *= opacity;
     if (sum.a < 0.01)

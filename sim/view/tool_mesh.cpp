@@ -52,6 +52,8 @@ glm::vec3 role_colour(Role role) noexcept {
         return {0.92F, 0.52F, 0.05F};
     case Role::assist:
         return {0.05F, 0.62F, 0.52F};
+    case Role::scope:
+        return {0.70F, 0.40F, 0.80F};
     }
     return {0.5F, 0.5F, 0.5F};
 }
