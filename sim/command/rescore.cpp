@@ -22,7 +22,7 @@ Scores rescore_attempt(tasks::Logbook& logbook, const tasks::AttemptRow& row) {
     const Scene scene = parse_scene(row.scene_text, "scene in the logbook");
     const tasks::Exercise exercise =
         tasks::parse_exercise(row.exercise_text, "exercise in the logbook");
-    Attempt attempt(scene, exercise, std::vector<tasks::Target>(exercise.target.size()), row,
+    Attempt attempt(scene, exercise, std::vector<tasks::Target>(tasks::places_of(exercise)), row,
                     nullptr);
     for (const auto& bytes : logbook.chunks(row.id)) {
         const tasks::Chunk chunk = tasks::decode_chunk(bytes);
