@@ -28,7 +28,10 @@ constexpr double kPointShare = 0.75; // of the radius: how near people point, wi
 constexpr double kGoodShare = 0.9;   // of the radius: near enough, no correction
 constexpr double kNotice_s = 1.0;    // pointing well and nothing happens: something is wrong
 constexpr double kGiveUp_s = 8.0;
-constexpr double kMostPull = 0.7; // of the force limit: no further
+constexpr double kMostPull = 0.7;   // of the force limit: no further
+constexpr double kTooHeavy_s = 1.0; // it resists for so long: another try
+constexpr double kHigh_m = 15e-3;   // so near to where it was to be brought is enough
+constexpr int kMostLifts = 5;
 constexpr int kMaxCorrections = 4;
 
 int ticks(double seconds) {
@@ -108,6 +111,12 @@ void FindHand::decide(const HandSight& sight) {
     }
     offset_m_ = glm::dvec3{0.0};
     mistaken_ = near_ = false;
+    if (hangs(sight)) {
+        tool_ = static_cast<int>(exercise_.lift->role);
+        lifting_ = true;
+        begin_lift();
+        return;
+    }
     if (!choose_job(sight)) {
         pause(skill_.pause_s);
         return;
@@ -277,6 +286,12 @@ void FindHand::close_jaws() {
     jaw = std::min(1.0, phase_ticks_ * kTick_s / kJaw_s);
     if (phase_ticks_ * kTick_s < kJaw_s + skill_.reaction_s)
         return;
+    lifts_ = 0;
+    begin_lift();
+}
+
+void FindHand::begin_lift() {
+    ++lifts_;
     route_from_m_ = goal();
     route_to_m_ = exercise_.lift->to_m;
     const double way_m = glm::distance(route_from_m_, route_to_m_);
@@ -287,7 +302,16 @@ void FindHand::close_jaws() {
     move_.time_s = move_.duration_s;
 }
 
-// Up with it, stride by stride; no further when it resists, and anew when it was lost.
+// What is held hangs half-way: it was too heavy to go on.
+bool FindHand::hangs(const HandSight& sight) const {
+    if (!exercise_.lift || lifts_ >= kMostLifts)
+        return false;
+    const auto lifter = static_cast<std::size_t>(exercise_.lift->role);
+    return !sight.held[lifter] && seen_.before(skill_.reaction_s).holding &&
+           glm::distance(goal_m_[lifter], exercise_.lift->to_m) > kHigh_m;
+}
+
+// Up with it, stride by stride; it waits while it resists, and begins anew when it was lost.
 void FindHand::keep_lifting(const HandSight& sight) {
     const Percept& felt = seen_.before(kFeelShare * skill_.reaction_s);
     const Percept& seen = seen_.before(skill_.reaction_s);
@@ -299,15 +323,17 @@ void FindHand::keep_lifting(const HandSight& sight) {
         back_off(-room_m_ * sight.now.tool[static_cast<std::size_t>(tool_)].shaft);
         return;
     }
+    heavy_ticks_ = heavy ? heavy_ticks_ + 1 : 0;
+    if (heavy && heavy_ticks_ * kTick_s < kTooHeavy_s)
+        return;
     if (!arrived(move_) && !heavy) {
         move_.time_s += kTick_s;
         goal() = place_m(move_);
-        return;
-    }
-    if (stride_ < strides_ && !heavy)
+    } else if (stride_ < strides_ && !heavy) {
         next_stride(sight);
-    else
+    } else {
         pause(skill_.pause_s + skill_.plan_s);
+    }
 }
 
 // At the tube until it counts; nearer if it is seen to be too far, anew when nothing comes of it.

@@ -43,6 +43,8 @@ class FindHand {
     void look(const HandSight& sight);
     void descend(const HandSight& sight);
     void close_jaws();
+    void begin_lift();
+    bool hangs(const HandSight& sight) const;
     void keep_lifting(const HandSight& sight);
     void keep_pointing(const HandSight& sight);
     void back_off(const glm::dvec3& way_m);
@@ -64,6 +66,7 @@ class FindHand {
     glm::dvec3 route_from_m_{0.0}, route_to_m_{0.0};
     double room_m_; // above the place, before going down or near
     double deep_m_ = 0.0;
+    int lifts_ = 0, heavy_ticks_ = 0; // tries with what is held; it resists
     int strides_ = 1, stride_ = 0, corrections_ = 0;
     bool near_ = false; // pointing: at the tube, not above it
     MinimumJerk move_;
