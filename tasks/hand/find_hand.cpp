@@ -15,23 +15,15 @@ namespace {
 constexpr double kHover_m = 12e-3;   // tip above the place before going down or near
 constexpr double kMoreRoom_m = 4e-3; // added after each bump
 constexpr double kMostRoom_m = 40e-3;
-constexpr double kArc = 0.15;          // height of a route over its straight line
-constexpr double kFeelShare = 0.6;     // touch is quicker than sight
-constexpr double kBump_n = 0.06;       // felt on the way: something is there
-constexpr double kApproachShare = 0.3; // of the speed, going down
-constexpr double kCarryShare = 0.6;    // of the speed, with tissue in the jaws
-constexpr double kDepthSeen = 0.5;     // share of the depth error that a second look still leaves
-constexpr double kDeeper_m = 2e-3;     // past the first touch, so that the jaws have something
-constexpr double kNotFound_m = 12e-3;  // past the place where the tissue should have been
-constexpr double kJaw_s = 0.3;
+constexpr double kArc = 0.15;        // height of a route over its straight line
+constexpr double kFeelShare = 0.6;   // touch is quicker than sight
+constexpr double kBump_n = 0.06;     // felt on the way: something is there
+constexpr double kCarryShare = 0.6;  // of the speed, with tissue in the jaws
+constexpr double kDepthSeen = 0.5;   // share of the depth error that a second look still leaves
 constexpr double kPointShare = 0.75; // of the radius: how near people point, without touching
 constexpr double kGoodShare = 0.9;   // of the radius: near enough, no correction
 constexpr double kNotice_s = 1.0;    // pointing well and nothing happens: something is wrong
 constexpr double kGiveUp_s = 8.0;
-constexpr double kMostPull = 0.7;   // of the force limit: no further
-constexpr double kTooHeavy_s = 1.0; // it resists for so long: another try
-constexpr double kHigh_m = 15e-3;   // so near to where it was to be brought is enough
-constexpr int kMostLifts = 5;
 constexpr int kMaxCorrections = 4;
 
 int ticks(double seconds) {
@@ -221,6 +213,24 @@ void FindHand::travel(const HandSight& sight) {
     wait_ticks_ = ticks(skill_.pause_s);
 }
 
+// The tip beside where it has to be, as the flat picture shows it.
+FindHand::SeenError FindHand::see_error(const HandSight& sight) {
+    const glm::dvec3 wanted = place_wanted(sight);
+    const glm::dvec3 line = line_of_sight(sight, wanted);
+    const glm::dvec3 error = sight.now.tool[static_cast<std::size_t>(tool_)].tip_m - wanted;
+    const double depth_m = glm::dot(error, line);
+    return {error - depth_m * line, line, depth_m + kDepthSeen * skill_.depth_m * random_.normal()};
+}
+
+void FindHand::correct(const HandSight& sight, const SeenError& error) {
+    ++corrections_;
+    route_from_m_ = goal();
+    route_to_m_ = goal() - error.across_m - error.depth_m * error.line;
+    stride_ = 0;
+    strides_ = 1;
+    next_stride(sight);
+}
+
 // After the pause: on along the route, or correct what is seen to be wrong, or go to work.
 void FindHand::look(const HandSight& sight) {
     if (stride_ < strides_) {
@@ -228,21 +238,13 @@ void FindHand::look(const HandSight& sight) {
         return;
     }
     const glm::dvec3 wanted = place_wanted(sight);
-    const glm::dvec3 sight_line = line_of_sight(sight, wanted);
-    const glm::dvec3 error = sight.now.tool[static_cast<std::size_t>(tool_)].tip_m - wanted;
-    const double depth = glm::dot(error, sight_line);
-    const double depth_seen = depth + kDepthSeen * skill_.depth_m * random_.normal();
-    const glm::dvec3 across = error - depth * sight_line;
+    const SeenError error = see_error(sight);
     // Nobody corrects much less than he errs.
     const double good_m = 0.15 * exercise_.radius_m + 0.5 * skill_.aim_m;
-    if ((glm::length(across) > good_m || std::abs(depth_seen) > 0.3 * kHover_m) &&
+    const double deep_m = near_ ? (1.0 - kPointShare) * exercise_.radius_m : 0.3 * kHover_m;
+    if ((glm::length(error.across_m) > good_m || std::abs(error.depth_m) > deep_m) &&
         corrections_ < kMaxCorrections) {
-        ++corrections_;
-        route_from_m_ = goal();
-        route_to_m_ = goal() - across - depth_seen * sight_line;
-        stride_ = 0;
-        strides_ = 1;
-        next_stride(sight);
+        correct(sight, error);
         return;
     }
     phase_ticks_ = 0;
@@ -265,96 +267,24 @@ void FindHand::look(const HandSight& sight) {
     }
 }
 
-// Down until it is touched, and a little deeper; then the jaws close.
-void FindHand::descend(const HandSight& sight) {
-    const glm::dvec3 down = -sight.now.target[exercise_.target.size()].normal;
-    const double way_m = kApproachShare * skill_.speed_mps * kTick_s;
-    const Percept& seen = seen_.before(kFeelShare * skill_.reaction_s);
-    const bool touched = seen.touching[static_cast<std::size_t>(tool_)];
-    goal() += way_m * down;
-    deep_m_ += touched ? way_m : 0.0;
-    if (deep_m_ >= kDeeper_m) {
-        phase_ = Phase::close;
-        phase_ticks_ = 0;
-    } else if (phase_ticks_ * way_m > room_m_ + kNotFound_m) {
-        back_off(-room_m_ * down);
-    }
-}
-
-void FindHand::close_jaws() {
-    double& jaw = jaw_[static_cast<std::size_t>(tool_)];
-    jaw = std::min(1.0, phase_ticks_ * kTick_s / kJaw_s);
-    if (phase_ticks_ * kTick_s < kJaw_s + skill_.reaction_s)
-        return;
-    lifts_ = 0;
-    begin_lift();
-}
-
-void FindHand::begin_lift() {
-    ++lifts_;
-    route_from_m_ = goal();
-    route_to_m_ = exercise_.lift->to_m;
-    const double way_m = glm::distance(route_from_m_, route_to_m_);
-    strides_ = std::max(1, static_cast<int>(std::ceil(way_m / skill_.stride_m)));
-    stride_ = 0;
-    phase_ = Phase::lift;
-    move_ = plan_move(goal(), goal(), skill_.speed_mps);
-    move_.time_s = move_.duration_s;
-}
-
-// What is held hangs half-way: it was too heavy to go on.
-bool FindHand::hangs(const HandSight& sight) const {
-    if (!exercise_.lift || lifts_ >= kMostLifts)
-        return false;
-    const auto lifter = static_cast<std::size_t>(exercise_.lift->role);
-    return !sight.held[lifter] && seen_.before(skill_.reaction_s).holding &&
-           glm::distance(goal_m_[lifter], exercise_.lift->to_m) > kHigh_m;
-}
-
-// Up with it, stride by stride; it waits while it resists, and begins anew when it was lost.
-void FindHand::keep_lifting(const HandSight& sight) {
-    const Percept& felt = seen_.before(kFeelShare * skill_.reaction_s);
-    const Percept& seen = seen_.before(skill_.reaction_s);
-    const bool lost = !seen.holding;
-    const bool heavy =
-        felt.force_n[static_cast<std::size_t>(tool_)] > kMostPull * exercise_.force_limit_n;
-    if (lost) {
-        jaw_[static_cast<std::size_t>(tool_)] = 0.0;
-        back_off(-room_m_ * sight.now.tool[static_cast<std::size_t>(tool_)].shaft);
-        return;
-    }
-    heavy_ticks_ = heavy ? heavy_ticks_ + 1 : 0;
-    if (heavy && heavy_ticks_ * kTick_s < kTooHeavy_s)
-        return;
-    if (!arrived(move_) && !heavy) {
-        move_.time_s += kTick_s;
-        goal() = place_m(move_);
-    } else if (stride_ < strides_ && !heavy) {
-        next_stride(sight);
-    } else {
-        pause(skill_.pause_s + skill_.plan_s);
-    }
-}
-
 // At the tube until it counts; nearer if it is seen to be too far, anew when nothing comes of it.
 void FindHand::keep_pointing(const HandSight& sight) {
     const Percept& seen = seen_.before(skill_.reaction_s);
     const glm::dvec3 normal = sight.now.target[static_cast<std::size_t>(tube_)].normal;
     const bool counted = (seen.found & (1U << tube_)) != 0 || seen.done;
+    const double off_m =
+        glm::distance(sight.now.tool[static_cast<std::size_t>(tool_)].tip_m,
+                      sight.now.target[static_cast<std::size_t>(tube_)].position_m + offset_m_);
+    const bool off = off_m > kGoodShare * exercise_.radius_m;
+    const bool hopeless = mistaken_ || (off && corrections_ == kMaxCorrections);
     const double patience_s =
-        mistaken_ ? kNotice_s : exercise_.hold_s + skill_.reaction_s + kGiveUp_s;
+        hopeless ? kNotice_s : exercise_.hold_s + skill_.reaction_s + kGiveUp_s;
     if (counted || (exercise_.lift && !seen.holding) || phase_ticks_ * kTick_s > patience_s) {
         back_off(kHover_m * normal);
         return;
     }
-    const double off_m =
-        glm::distance(sight.now.tool[static_cast<std::size_t>(tool_)].tip_m,
-                      sight.now.target[static_cast<std::size_t>(tube_)].position_m + offset_m_);
-    if (off_m > kGoodShare * exercise_.radius_m && corrections_ < kMaxCorrections &&
-        phase_ticks_ > ticks(skill_.reaction_s)) {
-        phase_ = Phase::look;
-        wait_ticks_ = ticks(skill_.pause_s);
-    }
+    if (off && corrections_ < kMaxCorrections && phase_ticks_ > ticks(skill_.reaction_s))
+        correct(sight, see_error(sight));
 }
 
 // Tools that somebody else holds: where they are, and no job of ours.

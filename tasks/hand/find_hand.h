@@ -42,6 +42,12 @@ class FindHand {
     void travel(const HandSight& sight);
     void look(const HandSight& sight);
     void descend(const HandSight& sight);
+    struct SeenError {
+        glm::dvec3 across_m{0.0}, line{0.0, 0.0, -1.0}; // line: of sight, unit
+        double depth_m = 0.0;                           // along it
+    };
+    SeenError see_error(const HandSight& sight);
+    void correct(const HandSight& sight, const SeenError& error);
     void close_jaws();
     void begin_lift();
     bool hangs(const HandSight& sight) const;
