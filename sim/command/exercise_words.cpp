@@ -43,7 +43,7 @@ std::vector<std::string> limits_of(const tasks::Exercise& e) {
         return {band, fmt::format("Hold {:.1f} s within {:.0f} mm", e.hold_s, 1e3 * e.radius_m),
                 time};
     case ExerciseKind::find_tubes:
-        return {fmt::format("Force: error above {:.1f} N", e.force_limit_n),
+        return {fmt::format("Force: error above {:.2f} N", e.force_limit_n),
                 fmt::format("Hold {:.1f} s within {:.0f} mm, tube in the ring and large", e.hold_s,
                             1e3 * e.radius_m),
                 time};

@@ -120,15 +120,17 @@ void draw_messages(const Pen& pen, const ViewFrame& frame, float top_em) {
     centred(pen, font, x, top + 1.4F * em - 0.5F * size.y, ink::warn, text);
 }
 
-void draw_foot(const Pen& pen, Screen screen) {
+void draw_foot(const Pen& pen, const ViewFrame& frame, Screen screen) {
     const float em = pen.em, line = pen.height - 1.55F * em;
     pen.list.AddRectFilled({0.0F, pen.height - 1.85F * em}, {pen.width, pen.height}, ink::panel);
     const std::string_view keys =
         screen == Screen::replay ? "Backspace back to score"
         : pen.narrow()           ? "P pause   Esc forces off"
         : screen == Screen::demo ? "P pause   Backspace end   M sound   Esc forces off"
-        : pen.width < 66.0F * em
-            ? "P pause   Tab tool   Esc forces off"
+        : pen.width < 66.0F * em ? "P pause   Tab tool   Esc forces off"
+        : frame.scope.active
+            ? "P pause   Tab next tool   W A S D look   Q E in, out   R T camera   Z X optic   "
+              "Esc forces off"
             : "P pause   Tab next tool   W A S D Q E move   Space jaw   M sound   Esc forces off";
     const std::string_view notice =
         pen.narrow() ? "Not a medical device." : "For training. Not a medical device.";
@@ -156,7 +158,7 @@ void draw_hud(const ViewFrame& frame, Screen screen, const Fonts& fonts) {
     const bool shown = screen == Screen::demo || screen == Screen::replay;
     const char* word = screen == Screen::demo ? "Demonstration" : "Replay";
     draw_messages(pen, frame, shown && !pen.narrow() ? 7.2F : 4.3F + top_em);
-    draw_foot(pen, screen);
+    draw_foot(pen, frame, screen);
     if (shown && pen.narrow()) // between the clock and the counters
         centred(pen, fonts.body, 0.5F * (pen.width + 0.5F * pen.em), 1.8F * pen.em, ink::warn,
                 word);

@@ -149,7 +149,7 @@ void draw_instruments(const Pen& pen, const ViewFrame& frame) {
     if (beside)
         draw_scope(pen, frame.scope, {x, bottom - tall}, {x + wide, bottom});
     else if (frame.scope.present)
-        draw_scope(pen, frame.scope, {pen.width - 13.0F * em, bottom - tall - 3.0F * em},
+        draw_scope(pen, frame.scope, {pen.width - 12.0F * em, bottom - tall - 3.0F * em},
                    {pen.width - em, bottom - tall - 0.4F * em});
 }
 

@@ -1,6 +1,7 @@
 // tests/sim/view_window_test.cpp
 // The window itself, hidden, on whatever display there is (CTest starts a virtual one).
 #include "sim/view/demo_world.h"
+#include "sim/view/lens.h"
 #include "sim/view/window.h"
 
 #include <cstdlib>
@@ -182,6 +183,96 @@ TEST_CASE("A waiting target in the picture is as wide as its 3 mm project, and 1
     CHECK(std::abs(box.bottom - box.top + 1 - expected_px) <= 2.0);
     CHECK(std::abs(0.5 * (box.left + box.right) - 399.5) <= 1.0); // in the middle
     CHECK(std::abs(0.5 * (box.top + box.bottom) - 299.5) <= 1.0);
+}
+
+TEST_CASE("A mark under tissue is not seen through it, and is seen when the tissue is away") {
+    Window window(hidden(800, 600));
+    const DemoSurface cover = demo_wall(8);
+    ViewFrame frame;
+    frame.camera.eye_m = {0.0, 0.0, 0.2};
+    frame.camera.look_at_m = {0.0, 0.0, 0.0};
+    Screens screens;
+    screens.screen = Screen::run;
+    TargetView target;
+    target.position_m = {0.0, 0.0, -0.061}; // the cover is at -0.060 there, and faces the camera
+    const auto seen = [&](bool covered, bool buried) {
+        frame.surfaces.clear();
+        if (covered)
+            frame.surfaces = {surface_view(cover, 1, Look::fat)};
+        target.buried = buried;
+        target.position_m.z = 5.0; // behind the camera: the HUD says the same
+        frame.targets = {target};
+        const Shot without = shot_of(window, frame, screens);
+        frame.targets[0].position_m.z = -0.061;
+        return difference(without, shot_of(window, frame, screens), 12).count;
+    };
+    CHECK(seen(true, true) == 0);
+    CHECK(seen(true, false) > 100); // on soft ground a mark is lifted in depth
+    CHECK(seen(false, true) > 100);
+}
+
+TEST_CASE("The ring lies where the lens shows the exercise's share of the picture's height") {
+    for (const auto& [w, h] : {std::pair{800, 600}, std::pair{1280, 720}}) {
+        Window window(hidden(w, h));
+        Screens screens;
+        screens.screen = Screen::run;
+        ViewFrame frame;
+        const Shot without = shot_of(window, frame, screens);
+        frame.ring_share = 0.15;
+        const Box box = difference(without, shot_of(window, frame, screens), 60);
+        const double radius_px = 0.5 * (box.right - box.left + 1);
+        const double seen = pinhole_place(lens_of(w, h), {radius_px / (0.5 * h), 0.0}).x;
+        CHECK(std::abs(seen - 2.0 * frame.ring_share) * 0.5 * h <= 2.0); // half a line's width
+        CHECK(std::abs(0.5 * (box.top + box.bottom) - 0.5 * h) <= 1.0);
+    }
+}
+
+TEST_CASE("The endoscope's panel says who holds it and how level it is, in its own place") {
+    for (const auto& [w, h, scale] : {std::tuple{1280, 720, 1.0}, std::tuple{800, 600, 2.0}}) {
+        WindowOptions options = hidden(w, h);
+        options.text_scale = scale;
+        Window window(options);
+        Screens screens;
+        screens.screen = Screen::run;
+        ViewFrame frame;
+        for (ToolView& tool : frame.tools)
+            tool.present = true;
+        const auto shot = [&](ScopeView scope) {
+            scope.present = true;
+            frame.scope = scope;
+            return shot_of(window, frame, screens);
+        };
+        const Shot mount = shot({}), you = shot({.active = true}),
+                   assistant = shot({.assistant = true}), faulted = shot({.faulted = true});
+        const std::vector<const Shot*> all{&mount, &you, &assistant, &faulted};
+        for (std::size_t i = 0; i < all.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j)
+                CHECK(difference(*all[i], *all[j], 40).count > 30);
+        // left and right are told apart, and 16 degrees from 14 by more than their two degrees
+        const auto turned = [&](double degrees) {
+            return shot({.horizon_rad = degrees * std::numbers::pi / 180.0});
+        };
+        CHECK(difference(turned(10.0), turned(-10.0), 40).count > 10);
+        CHECK(difference(turned(14.0), turned(16.0), 40).count >
+              2 * difference(turned(12.0), turned(14.0), 40).count);
+        const Box box = difference(turned(-40.0), turned(40.0), 40);
+        CHECK(box.left > w / 2);
+        CHECK(box.top > h / 2);
+    }
+}
+
+TEST_CASE("Without a band a force bar shows its limit and nothing else") {
+    Window window(hidden(800, 600));
+    Screens screens;
+    screens.screen = Screen::run;
+    ViewFrame frame;
+    frame.tools[1].present = true;
+    const Shot banded = shot_of(window, frame, screens);
+    frame.force.band_min_n = frame.force.band_max_n = 0.0;
+    const Shot free = shot_of(window, frame, screens);
+    CHECK(difference(banded, free, 20).count > 100);
+    frame.force.limit_n = 2.5; // the bar is as long as 1.25 limits, so the mark stays
+    CHECK(difference(free, shot_of(window, frame, screens), 20).count == 0);
 }
 
 TEST_CASE("A surface that moves moves in the picture, and only there") {
