@@ -221,7 +221,7 @@ const view::ViewFrame& Stage::frame(Exchange& exchange) {
     frame_.errors = progress_.errors;
     frame_.forces_on = !exchange.zero_forces.load();
     frame_.recorder = session_.recorded ? view::Recorder::recording : view::Recorder::off;
-    frame_.messages = {"Not a medical device"};
+    frame_.messages.clear(); // that it is not a medical device the foot line says
     if (by_hand_)
         frame_.messages.push_back("Mouse and keyboard: forces are drawn, not felt");
     if (!note_.empty())

@@ -5,12 +5,19 @@
 namespace tasks {
 namespace {
 
-int nearest_tube(const Exercise& exercise, const Observation& seen, std::uint32_t found) {
+bool counts(const Exercise& exercise, const Observation& seen, std::size_t tube) {
+    return tube_seen(exercise, seen, tube) &&
+           tube_pointed(exercise, seen, tube, static_cast<int>(exercise.target[tube].role));
+}
+
+int tube_of(const Exercise& exercise, const Observation& seen, std::uint32_t found) {
     int nearest = -1;
     double nearest_off = 0.0;
     for (std::size_t k = 0; k < exercise.target.size(); ++k) {
         if (found & (1U << k))
             continue;
+        if (counts(exercise, seen, k))
+            return static_cast<int>(k);
         const double off = off_centre(seen.view, seen.target[k].position_m);
         if (nearest < 0 || off < nearest_off) {
             nearest = static_cast<int>(k);
@@ -35,7 +42,7 @@ FindHint hidden(const Exercise& exercise, const Observation& seen, int tube) {
 } // namespace
 
 FindHint find_hint(const Exercise& exercise, const Observation& seen, std::uint32_t found) {
-    const int tube = nearest_tube(exercise, seen, found);
+    const int tube = tube_of(exercise, seen, found);
     if (tube < 0)
         return {-1, false, "All tubes found"};
     const auto k = static_cast<std::size_t>(tube);

@@ -15,8 +15,8 @@ struct FindHint {
     std::string words;
 };
 
-/// About the tube not found that is nearest to the middle of the picture; if all lie behind the
-/// endoscope, the first. `found`: bit k, tube k.
+/// About the tube that counts just now; else, of those not found, the one nearest to the middle of
+/// the picture; if all lie behind the endoscope, the first. `found`: bit k, tube k.
 FindHint find_hint(const Exercise& exercise, const Observation& seen, std::uint32_t found);
 
 } // namespace tasks

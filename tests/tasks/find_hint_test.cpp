@@ -91,6 +91,12 @@ TEST_CASE("Any order: the hold that is shown is that of the tube that is held") 
     Progress progress;
     repeat(progress, exercise, seen, static_cast<int>(0.5 * exercise.hold_s / kTick_s));
     CHECK(progress.next == 0);
+    seen.view.eye_m += glm::dvec3{-0.004, 0.0, 0.0}; // nearer to a third tube, which is not meant
+    Exercise crowded = exercise;
+    crowded.target.push_back({"c", Role::right, {0.014, 0.0, 0.0}});
+    crowded.lift.reset();
+    seen.target[2] = {.position_m = crowded.target[2].at_m, .clear_rays = kSightRays};
+    CHECK(words(crowded, seen) == "Tube 2: hold still");
     CHECK(share_at_next(progress, exercise) == doctest::Approx(0.5).epsilon(0.01));
 }
 
