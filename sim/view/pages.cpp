@@ -171,9 +171,11 @@ void draw_card(const CardModel& card, const Fonts& fonts, bool fresh, UserInput&
         "Mouse and keys: Tab changes the tool, W A S D Q E or the mouse move it, Space or the left "
         "button closes its jaws. Jaws that close on tissue hold it until they open; closed jaws "
         "stay closed when Tab goes on, until Space is pressed and released there again.");
+    quiet("Endoscope, where the scene has one: mouse or W A S D turn the view, wheel or Q E go in "
+          "and "
+          "out, R T turn the camera head, Z X the optic.");
     if (std::find(card.roles.begin(), card.roles.end(), Role::scope) != card.roles.end())
-        quiet("Endoscope: mouse or W A S D turn the view, wheel or Q E go in and out, R T turn the "
-              "camera head, Z X the optic. What you do not hold is held for you.");
+        quiet("What you do not hold is held for you.");
     ImGui::EndChild();
     if (button(fonts, "Start", true))
         input.action = Action::start;
