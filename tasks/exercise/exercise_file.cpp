@@ -175,9 +175,10 @@ Exercise parse_exercise(std::string_view text, std::string_view file) {
     exercise.force_max_n = root.number("force_max_n", kForce_n, exercise.force_max_n);
     exercise.force_limit_n = root.number("force_limit_n", kForce_n, exercise.force_limit_n);
     exercise.time_limit_s = root.number("time_limit_s", {5.0, 3600.0}, exercise.time_limit_s);
-    if (exercise.force_min_n >= exercise.force_max_n)
+    const bool band = exercise.kind != ExerciseKind::find_tubes; // that has a limit only
+    if (band && exercise.force_min_n >= exercise.force_max_n)
         root.refuse("force_max_n", "a number above force_min_n");
-    if (exercise.force_max_n > exercise.force_limit_n)
+    if (band && exercise.force_max_n > exercise.force_limit_n)
         root.refuse("force_limit_n", "a number not below force_max_n");
     switch (exercise.kind) {
     case ExerciseKind::touch_points:
