@@ -11,6 +11,17 @@
 #include <glm/geometric.hpp>
 
 namespace tasks {
+namespace {
+
+// Of the tube that is nearest to being found: they come in any order.
+int longest_good_ticks(const Progress& progress) noexcept {
+    int most = 0;
+    for (const TubeSearch& tube : progress.tube)
+        most = tube.found ? most : std::max(most, tube.good_ticks);
+    return most;
+}
+
+} // namespace
 
 double reach_m(const ToolObservation& tool, const glm::dvec3& place_m) noexcept {
     const glm::dvec3 line = tool.tip_m - tool.contact_m;
@@ -78,18 +89,6 @@ std::uint32_t found_tubes(const Progress& progress) noexcept {
         found |= progress.tube[k].found ? 1U << k : 0U;
     return found;
 }
-
-namespace {
-
-// Of the tube that is nearest to being found: they come in any order.
-int longest_good_ticks(const Progress& progress) noexcept {
-    int most = 0;
-    for (const TubeSearch& tube : progress.tube)
-        most = tube.found ? most : std::max(most, tube.good_ticks);
-    return most;
-}
-
-} // namespace
 
 double share_at_next(const Progress& progress, const Exercise& exercise) noexcept {
     if (exercise.kind == ExerciseKind::follow_path)

@@ -103,7 +103,8 @@ double share_done(const Progress& progress, const Exercise& exercise) noexcept;
 /// Bit k: tube k is found.
 std::uint32_t found_tubes(const Progress& progress) noexcept;
 
-/// Share of what the next target needs, 0..1: of its holding time, of the way to the next point.
+/// Share of what the next target needs, 0..1: of its holding time (of tubes: whichever is pointed
+/// at), of the way to the next point.
 double share_at_next(const Progress& progress, const Exercise& exercise) noexcept;
 
 /// How far a touching tool is from a place: place against the line from tip centre to contact, m.

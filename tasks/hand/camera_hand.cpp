@@ -71,9 +71,9 @@ CameraHand::Gaze CameraHand::gaze_now(const HandSight& sight) {
         const auto k = static_cast<std::size_t>(std::clamp(sight.next_target, 0, last));
         return {sight.now.target[k].position_m, usual_distance_m_};
     }
-    const std::size_t tubes = exercise_.target.size();
+    // where it is lifted from: whoever comes next is in the picture there
     if (!is_lifted(sight))
-        return {sight.now.target[tubes].position_m, usual_distance_m_};
+        return {exercise_.lift->at_m, usual_distance_m_};
     const double seen = std::tan(0.5 * sight.now.view.field_of_view_rad);
     const double near_m = exercise_.mark_radius_m / (kToSpare * exercise_.least_share * seen);
     return {sight.now.target[tube_of_interest(sight)].position_m,
