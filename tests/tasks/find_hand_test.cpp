@@ -70,6 +70,28 @@ TEST_CASE("find hand: a flap that slips away is taken hold of again, whenever it
     CHECK(often.losses >= 2);
 }
 
+TEST_CASE("find hand: jaws that lost the flap on the way up open after a reaction time") {
+    const HandSkill skill = without_errors(skill_named("expert"));
+    ToyFlap rig = make_flap();
+    FindHand hand(skill, rig.exercise, 1, rig.start_tip_m);
+    const auto go = [&](int ticks) {
+        for (int i = 0; i < ticks; ++i)
+            step(rig, hand.tick(sight_of(rig)), start_scope());
+    };
+    while (!rig.held && rig.now.tick < 20000)
+        go(1);
+    REQUIRE(rig.held);
+    go(1000); // on its way
+    REQUIRE(rig.held);
+    REQUIRE_FALSE(rig.up);
+    rig.slip_ticks = {rig.now.tick + 1};
+    go(1 + static_cast<int>(skill.reaction_s / kTick_s));
+    CHECK(rig.losses == 1);
+    CHECK(rig.closed);
+    go(2);
+    CHECK_FALSE(rig.closed);
+}
+
 TEST_CASE("find hand: who mistakes the tool never takes the one that holds the flap") {
     HandSkill skill = without_errors(skill_named("expert"));
     skill.lapse = 1.0;
@@ -79,6 +101,8 @@ TEST_CASE("find hand: who mistakes the tool never takes the one that holds the f
         CHECK(rig.progress.complete);
         CHECK(rig.grasps == 1);
         CHECK(rig.let_go == 0);
+        CHECK(rig.up);
+        CHECK(rig.strayed_m < 6e-3); // it is held still
         for (const Event& event : rig.progress.events) {
             if (event.kind != EventKind::wrong_role)
                 continue;

@@ -48,7 +48,7 @@ TEST_CASE("find-tubes: a tube is found after hold_s seen and pointed at, and not
     search.go(search.hidden(), 10);
     const Observation both = search.shown(1, Role::right);
     search.go(both, 999);
-    search.go(search.shown(1), 1);                                 // for one tick nobody points
+    search.go(search.shown(1), 1); // for one tick nobody points
     search.go(both, 999);
     Observation covered = both; // for one tick something is before it
     covered.target[1].clear_rays = kEnoughRays - 1;

@@ -90,11 +90,13 @@ TEST_CASE("scope metrics: everything counts from the first movement to the compl
         const bool counts = tick >= kMoved && tick <= kDone;
         seen.stress_pa = counts ? (tick == kDone ? 60.0 : tick == kMoved ? 50.0 : 10.0) : 9e5;
         seen.horizon_rad = counts ? 0.1 : 1.0;
+        seen.view.eye_m.z += tick > kDone ? 0.02 * t_s : 0.0;
     });
     REQUIRE(s.progress.complete_tick == kDone);
     REQUIRE(s.progress.first_move_tick == kMoved);
     CHECK(value(s, "stress_peak") == 60.0);
     CHECK(value(s, "horizon_rms") == relative(0.1, 1e-6));
+    CHECK(value(s, "path_length.scope") < 1e-9);
     CHECK(value(s, "horizon_over") == 0.0);
     CHECK(find(s, "stress_peak")->first_tick == kMoved);
     CHECK(find(s, "stress_peak")->last_tick == kDone);

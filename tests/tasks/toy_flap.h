@@ -19,7 +19,8 @@ struct ToyFlap {
     int misses = 0;                       // closings that will catch nothing
     std::vector<std::int64_t> slip_ticks; // what is held is lost then
     int grasps = 0, losses = 0, let_go = 0;
-    bool held = false, closed = false;
+    double strayed_m = 0.0; // of what is held, from where it was brought to
+    bool held = false, closed = false, up = false;
     glm::dvec3 held_at_m{0.0}; // from the tip
     Observation now;
     Progress progress;
@@ -66,6 +67,9 @@ inline void grip(ToyFlap& rig, double jaw) {
     rig.let_go += rig.held && !slips && !rig.closed;
     rig.held = rig.held && rig.closed && !slips;
     place_m = rig.held ? tool.tip_m + rig.held_at_m : rig.exercise.lift->at_m;
+    const double away_m = glm::distance(place_m, rig.exercise.lift->to_m);
+    rig.up = rig.held && (rig.up || away_m < 6e-3);
+    rig.strayed_m = rig.up ? std::max(rig.strayed_m, away_m) : rig.strayed_m;
     tool.grasping = rig.held;
     if (rig.held)
         tool.force_n = {0.0, 0.0, -0.3};
