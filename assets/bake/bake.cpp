@@ -236,7 +236,7 @@ Baked bake(const Recipe& recipe, const BakeOptions& options) {
     clock.begin("mesh terms");
     tissue::make_mesh_terms(organ.mesh, organ.material.poisson, organ.anchored, footprint,
                             organ.surface, organ.bed, options.mesh_term_progress);
-    if (is_slender(recipe.kind)) {
+    if (is_slender(recipe.kind) || recipe.local_terms) {
         keep_terms_local(organ.material.poisson, organ.surface);
     }
     clock.end();

@@ -73,6 +73,7 @@ Recipe parse_recipe(const std::string& text, const std::string& file_name) {
         recipe.quality_ratio = top.number("quality_ratio", 1.05, 10.0, recipe.quality_ratio);
         recipe.quality_dihedral_deg =
             top.number("quality_dihedral_deg", 0.0, 25.0, recipe.quality_dihedral_deg);
+        recipe.local_terms = top.word("mesh_terms", {"whole", "local"}, "whole") == "local";
         read_fine(top, recipe);
     }
     if (top.has("material")) {

@@ -43,7 +43,7 @@ enum class Kind { liver, wall, box, ground, sheet, tube };
 constexpr bool is_rigid(Kind kind) {
     return kind == Kind::wall || kind == Kind::ground;
 }
-/// Bends as a whole when it is pressed.
+/// Bends as a whole when it is pressed; its mesh terms are local, whatever the recipe says.
 constexpr bool is_slender(Kind kind) {
     return kind == Kind::sheet || kind == Kind::tube;
 }
@@ -61,6 +61,7 @@ struct Recipe {
     std::vector<AnchorSphere> anchor_spheres;
     std::vector<AnchorBox> anchor_boxes;
     double hold_length_mm = 0.0; // L of the elastic bed in the anchors; 0: their nodes are fixed
+    bool local_terms = false;    // mesh terms without what is a swing of the whole body
     std::vector<FineSpot> fine;
     tissue::Material material;
     std::uint64_t text_hash = 0; // FNV-1a of the text

@@ -96,6 +96,9 @@ TEST_CASE("recipe: what is written is what is read") {
     CHECK(r.fine[0].edge_mm == 2.5);
     CHECK(r.material.young_pa == 6000.0);
     CHECK(r.material.source == "chosen");
+    CHECK_FALSE(r.local_terms);
+    CHECK(bake::parse_recipe(with("edge_mm = 12", "edge_mm = 12\nmesh_terms = \"local\""), "b.toml")
+              .local_terms);
 }
 
 TEST_CASE("recipe: a bad value names file, line, key, value and what is accepted") {
