@@ -135,15 +135,18 @@ glm::dvec3 normal_on(const Body& body, const haptics::SurfacePoint& at) noexcept
         mixed(body.skin_normal, body.organ->surface.triangles[at.triangle], at.weight));
 }
 
-Foot nearest_on(const Body& body, const glm::dvec3& from_m) noexcept {
+Foot nearest_on(const Body& body, const glm::dvec3& from_m, double within_m) noexcept {
     double nearest2 = std::numeric_limits<double>::max(); // of the vertices, then of triangles
     for (const glm::dvec3& v : body.skin_m) {
         const glm::dvec3 d = v - from_m;
         nearest2 = std::min(nearest2, glm::dot(d, d));
     }
-    // a triangle so near has its first corner within an edge of there
+    // a triangle so near has its corners within an edge of there
     constexpr double kStretched = 1.5;
-    const double near_m = std::sqrt(nearest2) + kStretched * body.longest_edge_m;
+    const double edge_m = kStretched * body.longest_edge_m, vertex_m = std::sqrt(nearest2);
+    if (vertex_m - edge_m > within_m)
+        return {.at = {0, {1.0, 0.0, 0.0}}, .distance_m = vertex_m};
+    const double near_m = std::min(vertex_m, within_m) + edge_m;
     const std::vector<tissue::Triangle>& triangles = body.organ->surface.triangles;
     Foot foot{.at = {0, {1.0, 0.0, 0.0}}}; // of a place that is not a number
     nearest2 = std::numeric_limits<double>::max();

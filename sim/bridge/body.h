@@ -9,6 +9,7 @@
 #include "tissue/response/contact_basis.h"
 #include "tissue/response/patch.h"
 
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -76,11 +77,13 @@ struct BodySurface {
 };
 
 /// The nearest point of the skin; exact while no edge is stretched by half. `distance_m`: to it.
+/// Skin farther than `within_m` need not be found: then some point, and a distance beyond that.
 struct Foot {
     haptics::SurfacePoint at;
     double distance_m = 0.0;
 };
-Foot nearest_on(const Body& body, const glm::dvec3& from_m) noexcept;
+Foot nearest_on(const Body& body, const glm::dvec3& from_m,
+                double within_m = std::numeric_limits<double>::infinity()) noexcept;
 
 inline tissue::ContactPoint tissue_point(const haptics::SurfacePoint& at) noexcept {
     return {static_cast<std::uint32_t>(at.triangle), at.weight};

@@ -18,7 +18,7 @@ void find_nearest(TissueRig& rig, int tool, const glm::dvec3& from_m, double rea
     Foot best;
     int body = -1;
     for (std::size_t b = 0; b < rig.bodies.size(); ++b) {
-        const Foot foot = nearest_on(rig.bodies[b], from_m);
+        const Foot foot = nearest_on(rig.bodies[b], from_m, reach_m);
         if (body < 0 || foot.distance_m < best.distance_m) {
             best = foot;
             body = static_cast<int>(b);
@@ -42,8 +42,12 @@ haptics::WalkResult carried(const Body& body, const haptics::SurfacePoint& at,
 }
 
 // A tip that no skin of the body reaches touches nothing, whatever its contact point says: that one
-// is on the far side of something thin.
-bool is_off(const Body& body, const haptics::ToolTip& tip, const Foot& foot) noexcept {
+// is on the far side of something thin. Mostly the contact point is reached itself.
+bool is_off(const Body& body, const haptics::ToolTip& tip,
+            const haptics::SurfacePoint& contact) noexcept {
+    if (glm::distance(tip.centre_m, place_on(body, contact)) <= tip.radius_m)
+        return false;
+    const Foot foot = nearest_on(body, tip.centre_m);
     const glm::dvec3 out = tip.centre_m - place_on(body, foot.at);
     return foot.distance_m > tip.radius_m && glm::dot(out, normal_on(body, foot.at)) > 0.0;
 }
@@ -96,8 +100,7 @@ void follow_contacts(TissueRig& rig, const ToolsNow& tools) noexcept {
         if (memory.grasped && (closes || !(tip.grip.hold_n > 0.0)))
             haptics::release_grasp(memory);
         const bool lost = memory.touching && !memory.grasped && contact.body >= 0 &&
-                          is_off(rig.bodies[contact.body], tip,
-                                 nearest_on(rig.bodies[contact.body], tip.centre_m));
+                          is_off(rig.bodies[contact.body], tip, contact.at);
         if (contact.body < 0 || !memory.touching || lost) {
             find_nearest(rig, i, closes ? tip.grip.closed_at_m : tip.centre_m,
                          tip.radius_m + reach_m);

@@ -43,7 +43,13 @@ void check_near(const sim::Body& body, double most_m, std::uint32_t seed) {
         const glm::dvec3 from =
             body.skin_m[vertex(rng)] + glm::dvec3{aside(rng), aside(rng), aside(rng)};
         const sim::Foot foot = sim::nearest_on(body, from);
-        REQUIRE(std::abs(foot.distance_m - brute_m(body, from)) < 1e-12);
+        const double nearest_m = brute_m(body, from);
+        REQUIRE(std::abs(foot.distance_m - nearest_m) < 1e-12);
+        for (const double within_m : {1.001 * nearest_m, 0.999 * nearest_m, 0.5 * nearest_m}) {
+            const sim::Foot bounded = sim::nearest_on(body, from, within_m);
+            REQUIRE((within_m > nearest_m ? bounded.distance_m == foot.distance_m
+                                          : bounded.distance_m > within_m));
+        }
         REQUIRE(std::abs(glm::distance(sim::place_on(body, foot.at), from) - foot.distance_m) <
                 1e-12);
     }
