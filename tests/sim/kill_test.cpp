@@ -17,14 +17,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-pid_t start(const std::string& log) {
+pid_t start(const char* exercise, const std::string& log) {
     const pid_t child = fork();
     if (child != 0)
         return child;
     if (!std::freopen("/dev/null", "w", stdout))
         _exit(3);
-    execl(TROCAR_BINARY, TROCAR_BINARY, "run", "touch-points", "--realtime", "--seconds", "60",
-          "--log", log.c_str(), static_cast<char*>(nullptr));
+    execl(TROCAR_BINARY, TROCAR_BINARY, "run", exercise, "--realtime", "--seconds", "60", "--log",
+          log.c_str(), static_cast<char*>(nullptr));
     _exit(4);
 }
 
@@ -47,7 +47,8 @@ TEST_CASE("kill -9: at 20 random moments nothing but the last second is lost") {
     std::mt19937_64 random(7);
     std::vector<std::size_t> whole; // ticks of each earlier attempt, as first seen
     for (int round = 0; round < 20; ++round) {
-        const pid_t child = start(log);
+        constexpr const char* kExercises[] = {"touch-points", "follow-path", "find-tubes"};
+        const pid_t child = start(kExercises[round % 3], log);
         REQUIRE(child > 0);
         const auto patience = Clock::now() + std::chrono::seconds(60);
         while (watcher.attempts().size() == whole.size() && Clock::now() < patience) {
