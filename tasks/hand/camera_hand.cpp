@@ -13,6 +13,7 @@ namespace {
 constexpr double kCalm = 0.08;        // of the picture's height off the middle: no reason to move
 constexpr double kCalmDistance = 0.1; // of the distance
 constexpr double kToSpare = 1.25;     // times the size that a mark has to have
+constexpr double kRoom = 1.3;         // times the way to a tool: what half a picture has to show
 constexpr double kStill_mps = 4e-3;   // a tool that holds what it has lifted
 constexpr double kStill_s = 0.5;
 constexpr double kInterest_m = 25e-3; // a tool so near a tube is about to point at it
@@ -71,13 +72,18 @@ CameraHand::Gaze CameraHand::gaze_now(const HandSight& sight) {
         const auto k = static_cast<std::size_t>(std::clamp(sight.next_target, 0, last));
         return {sight.now.target[k].position_m, usual_distance_m_};
     }
-    // where it is lifted from: whoever comes next is in the picture there
+    // half-way between what is lifted and where it was: there is room for all who work on it
     if (!is_lifted(sight))
-        return {exercise_.lift->at_m, usual_distance_m_};
+        return {0.5 * (exercise_.lift->at_m + sight.now.target[exercise_.target.size()].position_m),
+                usual_distance_m_};
+    // as near as the mark has to be large, but not before the tool that points is there too
+    const std::size_t k = tube_of_interest(sight);
+    const glm::dvec3& tube_m = sight.now.target[k].position_m;
+    const auto tool = static_cast<std::size_t>(exercise_.target[k].role);
+    const double away_m = glm::distance(sight.now.tool[tool].tip_m, tube_m);
     const double seen = std::tan(0.5 * sight.now.view.field_of_view_rad);
     const double near_m = exercise_.mark_radius_m / (kToSpare * exercise_.least_share * seen);
-    return {sight.now.target[tube_of_interest(sight)].position_m,
-            std::min(near_m, usual_distance_m_)};
+    return {tube_m, std::min(std::max(near_m, kRoom * away_m / seen), usual_distance_m_)};
 }
 
 void CameraHand::begin_move(const HandSight& sight, const Gaze& gaze) {
