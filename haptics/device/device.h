@@ -14,7 +14,7 @@ struct DeviceSample {
     std::int32_t roll_counts = 0;
     std::int32_t jaw_counts = 0;   // 0 open .. 1000 closed
     std::int32_t optic_counts = 0; // endoscope: optic against the camera head
-    std::uint32_t sequence = 0;  // of the device's own frames
+    std::uint32_t sequence = 0;    // of the device's own frames
     std::uint8_t buttons = 0;
 };
 

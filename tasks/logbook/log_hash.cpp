@@ -68,7 +68,7 @@ class Sha256 {
 
 constexpr std::uint8_t kHashedToolFlags = 2 | 4; // present, faulted: inputs; the rest are results
 constexpr std::uint8_t kScopePresent = 2;
-constexpr std::uint8_t kHashedStepFlags = 1;     // warped tangent used: schedule
+constexpr std::uint8_t kHashedStepFlags = 1; // warped tangent used: schedule
 
 } // namespace
 

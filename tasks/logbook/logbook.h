@@ -113,8 +113,8 @@ class Logbook {
 ///   setup    text exercise, exercise_text, scene_text, scene_hash, model, coupling; u64 seed;
 ///            i32 fem_hz; flag forces_on; u64 number of start_counts, then 3 i64 each
 ///   ticks    each: i64 tick, i64 adopted_step; for each of the 3 tools: 3 i32 counts,
-///            i32 roll_counts, i32 jaw_counts, u8 flags & 6 (2 present, 4 faulted); if the endoscope
-///            is present: 3 i32 counts, i32 camera_counts, i32 optic_counts, u8 flags
+///            i32 roll_counts, i32 jaw_counts, u8 flags & 6 (2 present, 4 faulted); if the
+///            endoscope is present: 3 i32 counts, i32 camera_counts, i32 optic_counts, u8 flags
 ///   steps    each: i64 step, i64 sample_tick, u8 flags & 1 (warped tangent used)
 ///   events   each: i64 tick, u8 kind (EventKind), i8 tool, i8 target, 3 f64 place_m, f64 value
 ///   metrics  each: text id, i32 version, f64 value, text unit, flag lower_is_better, flag felt,

@@ -8,8 +8,8 @@
 //   column  = for every row: varint(zigzag(value - value of the row before, first 0)), mod 2^64
 //   columns = in the order of tick_columns() and step_columns(); then, for every target index t,
 //             x, y and z over the steps that have more than t targets
-//   format 2 ends with the endoscope's columns, stress and, for every target index, clear rays; what
-//   a recording of format 1 does not have is zero
+//   format 2 ends with the endoscope's columns, stress and, for every target index, clear rays;
+//   what a recording of format 1 does not have is zero
 #include "tasks/logbook/trace.h"
 
 #include "tasks/logbook/bytes.h"
@@ -73,7 +73,8 @@ static_assert(kMaxRows * 10 *
 
 template <class Column> void sight_columns(Column&& column) {
     for (std::size_t t = 0; t < kMaxTargets; ++t)
-        column(static_cast<int>(t), [=](auto& row) -> auto& { return row.clear_rays[t]; });
+        column(
+            static_cast<int>(t), [=](auto& row) -> auto& { return row.clear_rays[t]; });
 }
 
 template <class Column> void target_columns(Column&& column) {
@@ -118,7 +119,9 @@ void read_column(VarintReader& reader, std::vector<Row>& rows, Get get, Has has)
 }
 
 constexpr auto kAll = [](const auto&) { return true; };
-constexpr auto kStress = [](auto& row) -> auto& { return row.stress_pa; };
+constexpr auto kStress = [](auto& row) -> auto& {
+    return row.stress_pa;
+};
 
 auto has_target(int target) {
     return [target](const StepTrace& step) { return step.targets > target; };

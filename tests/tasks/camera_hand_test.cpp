@@ -43,6 +43,12 @@ struct Watch {
         lifted_place_m(rig) = rig.exercise.lift->to_m;
         rig.now.tool[0].tip_m = rig.exercise.lift->to_m;
     }
+    // the tool of tube `k` is there
+    void point(int k) {
+        const auto role =
+            static_cast<std::size_t>(rig.exercise.target[static_cast<std::size_t>(k)].role);
+        rig.now.tool[role].tip_m = tube(k) + glm::dvec3{0.0, 0.0, 4e-3};
+    }
     glm::dvec3& tube(int k) { return rig.now.target[static_cast<std::size_t>(k)].position_m; }
     double picture_height_m() const {
         return 2.0 * goal.distance_m * std::tan(0.5 * rig.now.view.field_of_view_rad);
@@ -76,6 +82,12 @@ TEST_CASE("camera hand: looks at what has to be lifted, from where it started, a
     watch.lift();
     watch.go(8.0);
     CHECK(glm::distance(watch.goal.look_at_m, watch.tube(0)) < 1e-9);
+    // so near that the tool which is to point has room in the picture
+    const double far_m = watch.goal.distance_m;
+    CHECK(far_m > 0.1);
+    watch.point(0);
+    watch.go(8.0);
+    CHECK(watch.goal.distance_m < far_m);
     // a quarter larger than it has to be
     CHECK(size_in_view({.eye_m = {0.0, 0.0, watch.goal.distance_m},
                         .field_of_view_rad = watch.rig.now.view.field_of_view_rad},
@@ -148,6 +160,7 @@ TEST_CASE("camera hand: any skill brings the work back to where the exercise wan
         for (std::uint64_t seed = 1; seed <= 10; ++seed) {
             Watch watch(skill_named(name), seed);
             watch.lift();
+            watch.point(0);
             watch.go(12.0);
             View view;
             view.field_of_view_rad = watch.rig.now.view.field_of_view_rad;
