@@ -18,7 +18,7 @@ namespace sim {
 namespace {
 
 struct TrainArguments {
-    std::string exercise, scene = "basic", trainee, log, shots;
+    std::string exercise, scene, trainee, log, shots;
     double shot_seconds = 4.0;
     bool mute = false;
     int font_percent = 100, width = 1280, height = 720;
@@ -34,14 +34,9 @@ class Trainer {
                           .mute = a.mute}),
           logbook_(a.log.empty() ? (user_data_dir() / "station.db").string() : a.log),
           log_path_(a.log.empty() ? (user_data_dir() / "station.db").string() : a.log) {
-        const ScenePlace place = find_scene(a.scene);
-        names_ = exercise_names(place);
-        if (names_.empty()) {
-            throw std::runtime_error(
-                fmt::format("{}: has no exercises/*.toml", place.folder.string()));
-        }
-        for (const std::string& name : names_) {
-            const auto path = find_exercise(place, name);
+        offered_ = a.scene.empty() ? offered_exercises() : of_scene(a.scene);
+        for (const auto& [name, scene] : offered_) {
+            const auto path = find_exercise(find_scene(scene), name);
             exercises_.push_back(tasks::parse_exercise(read_text(path), path.string()));
             screens_.menu.exercises.push_back(menu_entry(exercises_.back()));
         }
@@ -89,11 +84,24 @@ class Trainer {
     }
 
   private:
+    static std::vector<OfferedExercise> of_scene(const std::string& scene) {
+        const ScenePlace place = find_scene(scene);
+        std::vector<OfferedExercise> out;
+        for (const std::string& name : exercise_names(place))
+            out.push_back({name, scene});
+        if (out.empty()) {
+            throw std::runtime_error(
+                fmt::format("{}: has no exercises/*.toml", place.folder.string()));
+        }
+        return out;
+    }
+
     int index_of(const std::string& name) const {
-        const auto found = std::find(names_.begin(), names_.end(), name);
-        if (found == names_.end())
+        const auto found = std::find_if(offered_.begin(), offered_.end(),
+                                        [&](const auto& offer) { return offer.name == name; });
+        if (found == offered_.end())
             throw std::invalid_argument(fmt::format("exercise \"{}\" is unknown", name));
-        return static_cast<int>(found - names_.begin());
+        return static_cast<int>(found - offered_.begin());
     }
 
     void picture(const std::string& name) {
@@ -111,8 +119,8 @@ class Trainer {
     // One attempt, by the person or as the expert's demonstration, with its own threads.
     void perform(bool demo) {
         RunOptions options;
-        options.exercise = names_[chosen_];
-        options.scene = a_.scene;
+        options.exercise = offered_[chosen_].name;
+        options.scene = offered_[chosen_].scene;
         options.hands = demo ? "expert" : "person";
         options.forces_on = demo; // a mouse does not feel
         if (screens_.menu.trainee >= 0)
@@ -148,7 +156,7 @@ class Trainer {
         if (index < 0 || index >= static_cast<int>(outcome_.moments.size()))
             return;
         const tasks::Moment& moment = outcome_.moments[index];
-        MomentReplay replay(outcome_.row, outcome_.chunks, moment.tick, a_.scene);
+        MomentReplay replay(outcome_.row, outcome_.chunks, moment.tick, offered_[chosen_].scene);
         Stage stage(replay.session(), false, next_surface_id_);
         next_surface_id_ += static_cast<int>(replay.session().tissue.bodies.size());
         stage.say(moment.text);
@@ -225,7 +233,8 @@ class Trainer {
     std::string log_path_;
     view::Screens screens_;
     view::ViewFrame idle_;
-    std::vector<std::string> names_, trainee_ids_;
+    std::vector<OfferedExercise> offered_;
+    std::vector<std::string> trainee_ids_;
     std::vector<tasks::Exercise> exercises_;
     int chosen_ = 0, next_surface_id_ = 1, shots_ = 0;
     Attempt::Outcome outcome_; // of the score page

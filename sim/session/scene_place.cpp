@@ -109,6 +109,23 @@ std::string scene_for(const std::string& exercise) {
     return first == scenes.end() ? usual : *first;
 }
 
+std::vector<OfferedExercise> offered_exercises() {
+    std::vector<std::string> names = names_in(assets_dir() / "exercises"), others;
+    std::error_code absent;
+    for (const auto& scene : fs::directory_iterator(assets_dir() / "scenes", absent)) {
+        for (const std::string& name : names_in(scene.path() / "exercises"))
+            if (std::find(names.begin(), names.end(), name) == names.end())
+                others.push_back(name);
+    }
+    std::sort(others.begin(), others.end());
+    others.erase(std::unique(others.begin(), others.end()), others.end());
+    names.insert(names.end(), others.begin(), others.end());
+    std::vector<OfferedExercise> offered;
+    for (const std::string& name : names)
+        offered.push_back({name, scene_for(name)});
+    return offered;
+}
+
 std::vector<std::string> exercise_names(const ScenePlace& place) {
     std::vector<std::string> names = names_in(place.folder / "exercises");
     if (names.empty() && place.shipped)

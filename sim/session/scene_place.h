@@ -39,6 +39,13 @@ std::filesystem::path find_exercise(const ScenePlace& place, const std::string& 
 /// else the first of assets/scenes, by name, that has it; "basic" too if none does.
 std::string scene_for(const std::string& exercise);
 
+/// What a menu offers when no scene is named: the exercises of assets/exercises, then what other
+/// scenes have beside them, each with scene_for() it.
+struct OfferedExercise {
+    std::string name, scene;
+};
+std::vector<OfferedExercise> offered_exercises();
+
 /// Names for a menu, sorted: the scene's own exercises; if it has none and is shipped, those of
 /// assets/exercises.
 std::vector<std::string> exercise_names(const ScenePlace& place);
