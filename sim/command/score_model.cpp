@@ -12,10 +12,10 @@ std::string plain_unit(std::string_view unit) {
     return unit == "1" ? "" : fmt::format(" {}", unit);
 }
 
-// Counts whole, the rest with four significant digits, as the levels have them.
+// Counts whole, the rest with three significant digits: finer no level is.
 std::string number(double value) {
     return value == std::round(value) && std::abs(value) < 1e6 ? fmt::format("{:.0f}", value)
-                                                               : fmt::format("{:.4g}", value);
+                                                               : fmt::format("{:.3g}", value);
 }
 
 view::ProfileBar bar_of(const tasks::ProfileRow& row) {

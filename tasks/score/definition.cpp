@@ -70,4 +70,16 @@ const MetricDefinition* definition_of(std::string_view id) noexcept {
     return nullptr;
 }
 
+std::string metric_name(std::string_view id) {
+    const MetricDefinition* definition = definition_of(id);
+    if (!definition)
+        return std::string(id);
+    std::string name(definition->name);
+    if (definition->id != id) {
+        const std::string_view role = id.substr(id.find('.') + 1);
+        name += ", " + (role == "scope" ? "endoscope" : std::string(role) + " tool");
+    }
+    return name;
+}
+
 } // namespace tasks

@@ -38,7 +38,7 @@ std::vector<ProfileRow> profile(std::span<const Metric> metrics,
         const MetricDefinition* definition = definition_of(level.metric);
         ProfileRow row;
         row.metric = level.metric;
-        row.name = definition ? definition->name : level.metric;
+        row.name = metric_name(level.metric);
         row.unit = definition ? definition->unit : "1";
         row.lower_is_better = !definition || definition->better == Better::less;
         row.good = level.good;
