@@ -24,7 +24,8 @@ struct MetricDefinition {
 /// Of "path_length" and of "path_length.left" alike; nullptr if there is no such metric.
 const MetricDefinition* definition_of(std::string_view id) noexcept;
 
-/// For people, with whose it is: "Path length", "Path length, endoscope"; the id if nobody knows it.
+/// For people, with whose it is: "Path length", "Path length, endoscope"; the id if nobody knows
+/// it.
 std::string metric_name(std::string_view id);
 
 } // namespace tasks

@@ -1,7 +1,5 @@
 #include "tasks/score/find_metrics.h"
 
-#include "tasks/score/definition.h"
-
 #include <algorithm>
 #include <bit>
 
@@ -13,15 +11,9 @@ std::vector<Metric> find_metrics(const Progress& progress, const Exercise& exerc
     if (exercise.kind != ExerciseKind::find_tubes)
         return list;
     const auto add = [&](const char* id, double value) {
-        const MetricDefinition& definition = *definition_of(id);
-        list.push_back({.id = id,
-                        .version = definition.version,
-                        .value = value,
-                        .unit = std::string(definition.unit),
-                        .lower_is_better = definition.better == Better::less,
-                        .felt = forces_on || !definition.of_force,
-                        .first_tick = std::max<std::int64_t>(progress.first_move_tick, 0),
-                        .last_tick = progress.last_tick});
+        list.push_back(defined_metric(id, value, forces_on,
+                                      std::max<std::int64_t>(progress.first_move_tick, 0),
+                                      progress.last_tick));
     };
     add("tubes_found", std::popcount(found_tubes(progress)));
     if (!exercise.lift)

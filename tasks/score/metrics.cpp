@@ -21,12 +21,8 @@ class Report {
     Report(const Window& window, bool forces_on) : window_(window), forces_on_(forces_on) {}
     /// `id` is in the table of definitions, or a role's version of one that is.
     void add(std::string id, double value) {
-        const MetricDefinition* definition = definition_of(id);
-        if (!definition)
-            throw std::logic_error("metric without a definition: " + id);
-        list_.push_back({std::move(id), definition->version, value, std::string(definition->unit),
-                         definition->better == Better::less, forces_on_ || !definition->of_force,
-                         window_.first_tick, window_.last_tick});
+        list_.push_back(defined_metric(std::move(id), value, forces_on_, window_.first_tick,
+                                       window_.last_tick));
     }
     void add(std::string id, const std::optional<double>& value) {
         if (value)
@@ -117,6 +113,21 @@ void report_scope(Report& report, const ScoreState& score, const Window& window)
 }
 
 } // namespace
+
+Metric defined_metric(std::string id, double value, bool forces_on, std::int64_t first_tick,
+                      std::int64_t last_tick) {
+    const MetricDefinition* definition = definition_of(id);
+    if (!definition)
+        throw std::logic_error("metric without a definition: " + id);
+    return {std::move(id),
+            definition->version,
+            value,
+            std::string(definition->unit),
+            definition->better == Better::less,
+            forces_on || !definition->of_force,
+            first_tick,
+            last_tick};
+}
 
 void observe(ScoreState& score, const Observation& seen) {
     if (score.last_tick < 0)

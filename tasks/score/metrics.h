@@ -20,6 +20,10 @@ struct Metric {
     std::int64_t first_tick = 0, last_tick = 0; // samples it rests on
 };
 
+/// A metric as its definition has it. Throws std::logic_error for an id without one.
+Metric defined_metric(std::string id, double value, bool forces_on, std::int64_t first_tick,
+                      std::int64_t last_tick);
+
 /// 61 bytes per tool and tick, 32 beside: 130 MB for ten minutes of three tools, and up to twice
 /// that while the vectors grow.
 struct ScoreState {

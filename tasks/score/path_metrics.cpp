@@ -1,7 +1,5 @@
 #include "tasks/score/path_metrics.h"
 
-#include "tasks/score/definition.h"
-
 #include <cmath>
 
 namespace tasks {
@@ -18,15 +16,8 @@ std::vector<Metric> path_metrics(const Progress& progress, const Exercise& exerc
         return list;
     const PathSums& sums = progress.path;
     const auto add = [&](const char* id, double value) {
-        const MetricDefinition& definition = *definition_of(id);
-        list.push_back({.id = id,
-                        .version = definition.version,
-                        .value = value,
-                        .unit = std::string(definition.unit),
-                        .lower_is_better = definition.better == Better::less,
-                        .felt = forces_on || !definition.of_force,
-                        .first_tick = std::max<std::int64_t>(sums.begin_tick, 0),
-                        .last_tick = sums.last_tick});
+        list.push_back(defined_metric(id, value, forces_on,
+                                      std::max<std::int64_t>(sums.begin_tick, 0), sums.last_tick));
     };
     const double contacts = static_cast<double>(std::max<std::int64_t>(sums.contact_ticks, 1));
     const double ticks = static_cast<double>(std::max<std::int64_t>(sums.ticks, 1));
