@@ -9,7 +9,11 @@
 namespace {
 
 constexpr int kSeeds = 10;
-constexpr int kFirstSeed = 1001; // nothing was made with these
+// nothing was made with these: 1001 had been looked at when the assistant learned to keep tools in
+// the picture
+int first_seed(const std::string& exercise) {
+    return exercise == "find-tubes" ? 2001 : 1001;
+}
 
 struct Results {
     std::vector<double> time_s, path_m, errors;
@@ -27,7 +31,7 @@ double metric(const sim::Attempt::Outcome& outcome, const std::string& id) {
 Results attempts(const std::string& hands, bool noise = true, int seeds = kSeeds,
                  const std::string& exercise = "touch-points", const std::string& scene = "") {
     Results results;
-    for (int seed = kFirstSeed; seed < kFirstSeed + seeds; ++seed) {
+    for (int seed = first_seed(exercise); seed < first_seed(exercise) + seeds; ++seed) {
         sim::RunOptions options;
         options.hands = hands;
         options.exercise = exercise;
