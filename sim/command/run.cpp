@@ -113,7 +113,8 @@ void add_run(CLI::App& app, int& exit_code) {
     auto a = std::make_shared<RunArguments>();
     CLI::App* c = app.add_subcommand("run", "One scripted attempt, without a window");
     c->add_option("exercise", a->options.exercise, "Name or file of an exercise")->required();
-    c->add_option("--scene", a->options.scene, "Name, directory or file of a scene");
+    c->add_option("--scene", a->options.scene,
+                  "Name, directory or file of a scene; default: the one made for the exercise");
     c->add_option("--hands", a->options.hands,
                   "expert, intermediate, novice, another named skill, or FILE.toml");
     c->add_option("--coupling", a->coupling, "anchored or hold");

@@ -247,7 +247,8 @@ void add_train(CLI::App& app, int&) {
     auto a = std::make_shared<TrainArguments>();
     CLI::App* c = app.add_subcommand("train", "The window: pick an exercise, train, get a score");
     c->add_option("exercise", a->exercise, "Go straight to this exercise's card");
-    c->add_option("--scene", a->scene, "Name, directory or file of a scene");
+    c->add_option("--scene", a->scene,
+                  "Name, directory or file of a scene; default: the exercises' own");
     c->add_option("--log", a->log, "Logbook; default: the user's data directory");
     c->add_option("--font-percent", a->font_percent, "Size of all text; Ctrl + and Ctrl - too")
         ->check(CLI::Range(100, 200));
