@@ -1,0 +1,227 @@
+#include "haptics/collision/triangle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+namespace haptics {
+namespace {
+
+using glm::dvec3;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kMostAdvances = 64; // each is exact against a plane; a handful is usual
+
+double square(const dvec3& v) noexcept {
+    return glm::dot(v, v);
+}
+
+double largest(const dvec3& v) noexcept {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+/// 0..1 along a segment, of what is nearest to the place.
+double along_segment(const dvec3& a, const dvec3& ab, const dvec3& place) noexcept {
+    const double length2 = square(ab);
+    return length2 > 0.0 ? std::clamp(glm::dot(place - a, ab) / length2, 0.0, 1.0) : 0.0;
+}
+
+TrianglePoint on_edge(const TriangleCorners& corner, int from, const dvec3& place) noexcept {
+    const int to = (from + 1) % 3;
+    const dvec3 edge = corner[to] - corner[from];
+    const double s = along_segment(corner[from], edge, place);
+    TrianglePoint out{.place_m = corner[from] + s * edge};
+    out.weight[from] = 1.0 - s;
+    out.weight[to] = s;
+    out.distance2_m2 = square(place - out.place_m);
+    return out;
+}
+
+TrianglePoint on_nearest_edge(const TriangleCorners& corner, const dvec3& place) noexcept {
+    TrianglePoint best = on_edge(corner, 0, place);
+    for (int from = 1; from < 3; ++from)
+        if (const TrianglePoint other = on_edge(corner, from, place);
+            other.distance2_m2 < best.distance2_m2)
+            best = other;
+    return best;
+}
+
+/// The nearest points of two segments, as places along them (Ericson 5.1.9).
+std::array<double, 2> nearest_of_segments(const dvec3& p, const dvec3& d, const dvec3& q,
+                                          const dvec3& e) noexcept {
+    const dvec3 r = p - q;
+    const double dd = square(d), ee = square(e), de = glm::dot(d, e);
+    const double dr = glm::dot(d, r), er = glm::dot(e, r);
+    if (!(dd > 0.0))
+        return {0.0, ee > 0.0 ? std::clamp(er / ee, 0.0, 1.0) : 0.0};
+    if (!(ee > 0.0))
+        return {std::clamp(-dr / dd, 0.0, 1.0), 0.0};
+    const double cross2 = dd * ee - de * de;
+    double s = cross2 > 0.0 ? std::clamp((de * er - dr * ee) / cross2, 0.0, 1.0) : 0.0;
+    double t = (de * s + er) / ee;
+    if (t < 0.0 || t > 1.0) {
+        t = std::clamp(t, 0.0, 1.0);
+        s = std::clamp((de * t - dr) / dd, 0.0, 1.0);
+    }
+    return {s, t};
+}
+
+void keep_nearer(SegmentPair& best, const SegmentPair& other) noexcept {
+    if (other.on_triangle.distance2_m2 < best.on_triangle.distance2_m2)
+        best = other;
+}
+
+/// How long two convex things stay apart if their corners' gaps along one direction change evenly.
+struct Apart {
+    double time = kInfinity;
+    bool closing = false; // a gap that is used up gets smaller still
+
+    void add(double gap, double rate, double enough) noexcept {
+        if (!(rate < 0.0))
+            return;
+        time = std::min(time, std::max(gap, 0.0) / -rate);
+        closing = closing || gap <= enough;
+    }
+};
+
+/// The gap at which things count as touching: a rounding of their coordinates, or a share of what
+/// the question is about.
+double enough_gap(const MovingTriangle& triangle, double coordinate_m, double motion_m,
+                  double radius_m) noexcept {
+    for (int k = 0; k < 3; ++k) {
+        coordinate_m =
+            std::max({coordinate_m, largest(triangle.before[k]), largest(triangle.after[k])});
+        motion_m = std::max(motion_m, largest(triangle.after[k] - triangle.before[k]));
+    }
+    return 16.0 * std::numeric_limits<double>::epsilon() * coordinate_m +
+           kSweepGap * std::min(motion_m, radius_m > 0.0 ? radius_m : motion_m);
+}
+
+} // namespace
+
+TriangleCorners MovingTriangle::at(double time) const noexcept {
+    TriangleCorners out;
+    for (int k = 0; k < 3; ++k)
+        out[k] = before[k] + time * (after[k] - before[k]);
+    return out;
+}
+
+TrianglePoint nearest_on_triangle(const TriangleCorners& corner, const dvec3& place_m) noexcept {
+    const dvec3 ab = corner[1] - corner[0], ac = corner[2] - corner[0];
+    const dvec3 n = glm::cross(ab, ac);
+    const double n2 = square(n);
+    // inside all three edges: the foot of the perpendicular. Weights from the plane, so that they
+    // do not depend on which corner is the first.
+    if (n2 > 0.0) {
+        const dvec3 a = corner[0] - place_m, b = corner[1] - place_m, c = corner[2] - place_m;
+        const double u = glm::dot(n, glm::cross(b, c)), v = glm::dot(n, glm::cross(c, a)),
+                     w = glm::dot(n, glm::cross(a, b));
+        if (u >= 0.0 && v >= 0.0 && w >= 0.0) {
+            const double sum = u + v + w;
+            TrianglePoint out{.weight = dvec3{u, v, w} / sum};
+            out.place_m =
+                out.weight.x * corner[0] + out.weight.y * corner[1] + out.weight.z * corner[2];
+            const double height = glm::dot(n, a); // times |n|
+            out.distance2_m2 = height * height / n2;
+            if (std::isfinite(out.distance2_m2) && sum > 0.0)
+                return out;
+        }
+    }
+    return on_nearest_edge(corner, place_m);
+}
+
+SegmentPair nearest_to_segment(const TriangleCorners& corner, const dvec3& from_m,
+                               const dvec3& to_m) noexcept {
+    const dvec3 d = to_m - from_m;
+    const auto at = [&](double s) {
+        const dvec3 place = from_m + s * d;
+        return SegmentPair{nearest_on_triangle(corner, place), s, place};
+    };
+    SegmentPair best = at(0.0);
+    keep_nearer(best, at(1.0));
+    const dvec3 n = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const double above = glm::dot(n, from_m - corner[0]), below = glm::dot(n, to_m - corner[0]);
+    if ((above > 0.0 && below < 0.0) || (above < 0.0 && below > 0.0))
+        keep_nearer(best, at(std::clamp(above / (above - below), 0.0, 1.0)));
+    for (int k = 0; k < 3; ++k) {
+        const dvec3 edge = corner[(k + 1) % 3] - corner[k];
+        keep_nearer(best, at(nearest_of_segments(from_m, d, corner[k], edge)[0]));
+    }
+    return best;
+}
+
+TriangleSweep sweep_ball(const MovingTriangle& triangle, const dvec3& from_m, const dvec3& to_m,
+                         double radius_m) noexcept {
+    const dvec3 motion = to_m - from_m;
+    const double enough =
+        enough_gap(triangle, std::max(largest(from_m), largest(to_m)), largest(motion), radius_m);
+    double time = 0.0;
+    TriangleSweep out;
+    for (int advance = 0; advance < kMostAdvances; ++advance) {
+        const TriangleCorners corner = triangle.at(time);
+        const dvec3 centre = from_m + time * motion;
+        out.on_triangle = nearest_on_triangle(corner, centre);
+        const double distance = std::sqrt(out.on_triangle.distance2_m2);
+        if (!(distance > 0.0)) { // a point on the triangle: no direction keeps them apart
+            out.time = time;
+            return out;
+        }
+        const dvec3 n = (out.on_triangle.place_m - centre) / distance;
+        Apart apart;
+        for (int k = 0; k < 3; ++k)
+            apart.add(glm::dot(n, corner[k] - centre) - radius_m,
+                      glm::dot(n, triangle.after[k] - triangle.before[k] - motion), enough);
+        if (distance - radius_m <= enough && apart.closing) {
+            out.time = time;
+            return out;
+        }
+        time += apart.time;
+        if (!(time <= 1.0))
+            return out;
+    }
+    out.time = time;
+    return out;
+}
+
+TriangleSweep sweep_capsule(const MovingTriangle& triangle, const MovingSegment& s,
+                            double radius_m) noexcept {
+    const dvec3 move_from = s.from_after_m - s.from_before_m,
+                move_to = s.to_after_m - s.to_before_m;
+    const double coordinate = std::max({largest(s.from_before_m), largest(s.to_before_m),
+                                        largest(s.from_after_m), largest(s.to_after_m)});
+    const double enough =
+        enough_gap(triangle, coordinate, std::max(largest(move_from), largest(move_to)), radius_m);
+    double time = 0.0;
+    TriangleSweep out;
+    for (int advance = 0; advance < kMostAdvances; ++advance) {
+        const TriangleCorners corner = triangle.at(time);
+        const dvec3 from = s.from_before_m + time * move_from, to = s.to_before_m + time * move_to;
+        const SegmentPair pair = nearest_to_segment(corner, from, to);
+        out.on_triangle = pair.on_triangle;
+        out.along = pair.along;
+        const double distance = std::sqrt(pair.on_triangle.distance2_m2);
+        if (!(distance > 0.0)) {
+            out.time = time;
+            return out;
+        }
+        const dvec3 n = (pair.on_triangle.place_m - pair.place_m) / distance;
+        Apart apart;
+        for (int k = 0; k < 3; ++k) {
+            const dvec3 v = triangle.after[k] - triangle.before[k];
+            apart.add(glm::dot(n, corner[k] - from) - radius_m, glm::dot(n, v - move_from), enough);
+            apart.add(glm::dot(n, corner[k] - to) - radius_m, glm::dot(n, v - move_to), enough);
+        }
+        if (distance - radius_m <= enough && apart.closing) {
+            out.time = time;
+            return out;
+        }
+        time += apart.time;
+        if (!(time <= 1.0))
+            return out;
+    }
+    out.time = time;
+    return out;
+}
+
+} // namespace haptics
