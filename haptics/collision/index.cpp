@@ -33,6 +33,8 @@ CollisionIndex make_index(std::string_view name, const MeshView& mesh) {
     check(mesh);
     if (name == "brute-force")
         return make_brute_force(mesh);
+    if (name == "ours")
+        return make_wide_tree(mesh);
     std::string known;
     for (const std::string_view k : kCollisionNames)
         known += (known.empty() ? "" : ", ") + std::string(k);

@@ -6,6 +6,7 @@
 
 #include "haptics/collision/brute_force.h"
 #include "haptics/collision/queries.h"
+#include "haptics/collision/wide_tree.h"
 
 #include <functional>
 #include <span>
@@ -14,12 +15,12 @@
 
 namespace haptics {
 
-using CollisionIndex = std::variant<BruteForce>;
+using CollisionIndex = std::variant<BruteForce, WideTree>;
 
 /// Setup. `name`: one of kCollisionNames; throws std::invalid_argument otherwise, or for a
 /// triangle with a vertex that is not there or a vertex that is not finite.
 CollisionIndex make_index(std::string_view name, const MeshView& mesh);
-inline constexpr std::array<std::string_view, 1> kCollisionNames{"brute-force"};
+inline constexpr std::array<std::string_view, 2> kCollisionNames{"brute-force", "ours"};
 
 /// After the vertices have moved. Covers both ends of the interval if the mesh has `before_m`.
 void refit(CollisionIndex& index, const MeshView& mesh) noexcept;

@@ -38,12 +38,30 @@ TrianglePoint on_edge(const TriangleCorners& corner, int from, const dvec3& plac
     return out;
 }
 
-TrianglePoint on_nearest_edge(const TriangleCorners& corner, const dvec3& place) noexcept {
+// Rounding may put the foot of the perpendicular anywhere in a triangle this thin (sine of an angle
+// squared): the nearest of the foot and the edges is taken by its distance.
+constexpr double kSliver = 1e-6;
+
+TrianglePoint on_sliver(const TriangleCorners& corner, const dvec3& place) noexcept {
     TrianglePoint best = on_edge(corner, 0, place);
-    for (int from = 1; from < 3; ++from)
-        if (const TrianglePoint other = on_edge(corner, from, place);
-            other.distance2_m2 < best.distance2_m2)
+    const auto keep = [&](const TrianglePoint& other) {
+        if (other.distance2_m2 < best.distance2_m2)
             best = other;
+    };
+    keep(on_edge(corner, 1, place));
+    keep(on_edge(corner, 2, place));
+    const dvec3 n = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const dvec3 a = corner[0] - place, b = corner[1] - place, c = corner[2] - place;
+    const double u = glm::dot(n, glm::cross(b, c)), v = glm::dot(n, glm::cross(c, a)),
+                 w = glm::dot(n, glm::cross(a, b));
+    const double sum = u + v + w;
+    if (u >= 0.0 && v >= 0.0 && w >= 0.0 && sum > 0.0) {
+        TrianglePoint foot{.weight = dvec3{u, v, w} / sum};
+        foot.place_m =
+            foot.weight.x * corner[0] + foot.weight.y * corner[1] + foot.weight.z * corner[2];
+        foot.distance2_m2 = square(place - foot.place_m);
+        keep(foot);
+    }
     return best;
 }
 
@@ -109,26 +127,43 @@ TriangleCorners MovingTriangle::at(double time) const noexcept {
 
 TrianglePoint nearest_on_triangle(const TriangleCorners& corner, const dvec3& place_m) noexcept {
     const dvec3 ab = corner[1] - corner[0], ac = corner[2] - corner[0];
-    const dvec3 n = glm::cross(ab, ac);
-    const double n2 = square(n);
-    // inside all three edges: the foot of the perpendicular. Weights from the plane, so that they
-    // do not depend on which corner is the first.
-    if (n2 > 0.0) {
-        const dvec3 a = corner[0] - place_m, b = corner[1] - place_m, c = corner[2] - place_m;
-        const double u = glm::dot(n, glm::cross(b, c)), v = glm::dot(n, glm::cross(c, a)),
-                     w = glm::dot(n, glm::cross(a, b));
-        if (u >= 0.0 && v >= 0.0 && w >= 0.0) {
-            const double sum = u + v + w;
-            TrianglePoint out{.weight = dvec3{u, v, w} / sum};
-            out.place_m =
-                out.weight.x * corner[0] + out.weight.y * corner[1] + out.weight.z * corner[2];
-            const double height = glm::dot(n, a); // times |n|
-            out.distance2_m2 = height * height / n2;
-            if (std::isfinite(out.distance2_m2) && sum > 0.0)
-                return out;
-        }
+    const dvec3 a = place_m - corner[0], b = place_m - corner[1], c = place_m - corner[2];
+    const double a_ab = glm::dot(a, ab), a_ac = glm::dot(a, ac);
+    if (a_ab <= 0.0 && a_ac <= 0.0)
+        return {{1.0, 0.0, 0.0}, corner[0], square(a)};
+    const double b_ab = glm::dot(b, ab), b_ac = glm::dot(b, ac);
+    if (b_ab >= 0.0 && b_ac <= b_ab)
+        return {{0.0, 1.0, 0.0}, corner[1], square(b)};
+    const double c_ab = glm::dot(c, ab), c_ac = glm::dot(c, ac);
+    if (c_ac >= 0.0 && c_ab <= c_ac)
+        return {{0.0, 0.0, 1.0}, corner[2], square(c)};
+
+    const double ab2 = square(ab), ac2 = square(ac), ab_ac = glm::dot(ab, ac);
+    const double area2 = ab2 * ac2 - ab_ac * ab_ac;
+    if (!(area2 > kSliver * ab2 * ac2))
+        return on_sliver(corner, place_m);
+    const double w_c = a_ab * b_ac - b_ab * a_ac;
+    const double w_b = c_ab * a_ac - a_ab * c_ac;
+    const double w_a = b_ab * c_ac - c_ab * b_ac;
+    if (w_a > 0.0 && w_b > 0.0 && w_c > 0.0) {
+        TrianglePoint out;
+        const double scale = 1.0 / (w_a + w_b + w_c);
+        out.weight = {w_a * scale, w_b * scale, w_c * scale};
+        out.place_m = corner[0] + out.weight.y * ab + out.weight.z * ac;
+        out.distance2_m2 = square(place_m - out.place_m);
+        return out;
     }
-    return on_nearest_edge(corner, place_m);
+    // beside one edge, or two at an obtuse corner: the nearer
+    TrianglePoint best{.distance2_m2 = kInfinity};
+    for (int edge = 0; edge < 3; ++edge) {
+        const double beside = edge == 0 ? w_c : edge == 1 ? w_a : w_b;
+        if (beside > 0.0)
+            continue;
+        if (const TrianglePoint other = on_edge(corner, edge, place_m);
+            other.distance2_m2 < best.distance2_m2)
+            best = other;
+    }
+    return best;
 }
 
 SegmentPair nearest_to_segment(const TriangleCorners& corner, const dvec3& from_m,
