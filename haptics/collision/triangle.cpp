@@ -95,10 +95,12 @@ struct Apart {
     double time = kInfinity;
     bool closing = false; // a gap that is used up gets smaller still
 
+    /// Goes on to half of what is enough only: a point that rounding puts on the other side of a
+    /// triangle would seem to leave it.
     void add(double gap, double rate, double enough) noexcept {
         if (!(rate < 0.0))
             return;
-        time = std::min(time, std::max(gap, 0.0) / -rate);
+        time = std::min(time, std::max(gap - 0.5 * enough, 0.0) / -rate);
         closing = closing || gap <= enough;
     }
 };
@@ -114,6 +116,28 @@ double enough_gap(const MovingTriangle& triangle, double coordinate_m, double mo
     }
     return 16.0 * std::numeric_limits<double>::epsilon() * coordinate_m +
            kSweepGap * std::min(motion_m, radius_m > 0.0 ? radius_m : motion_m);
+}
+
+/// Unit, from a place to the nearest point of the triangle. Straight across the face or the edge
+/// that the point is on: the difference of two places that nearly meet has lost its direction in
+/// the rounding of their coordinates, and a long triangle's far corners would seem to be in the way
+/// or already passed.
+dvec3 direction_to(const TrianglePoint& near, const TriangleCorners& corner, const dvec3& place,
+                   double distance) noexcept {
+    const dvec3 n = (near.place_m - place) / distance;
+    const dvec3& w = near.weight;
+    const int zeros = (w.x == 0.0) + (w.y == 0.0) + (w.z == 0.0);
+    dvec3 across = n;
+    if (zeros == 0) {
+        const dvec3 face = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+        across = glm::dot(face, corner[0] - place) < 0.0 ? -face : face;
+    } else if (zeros == 1) {
+        const int opposite = w.x == 0.0 ? 0 : w.y == 0.0 ? 1 : 2;
+        const dvec3 edge = corner[(opposite + 2) % 3] - corner[(opposite + 1) % 3];
+        across = n - glm::dot(n, edge) / square(edge) * edge;
+    }
+    const double length = glm::length(across);
+    return length > 0.0 && std::isfinite(length) ? across / length : n;
 }
 
 } // namespace
@@ -202,7 +226,7 @@ TriangleSweep sweep_ball(const MovingTriangle& triangle, const dvec3& from_m, co
             out.time = time;
             return out;
         }
-        const dvec3 n = (out.on_triangle.place_m - centre) / distance;
+        const dvec3 n = direction_to(out.on_triangle, corner, centre, distance);
         Apart apart;
         for (int k = 0; k < 3; ++k)
             apart.add(glm::dot(n, corner[k] - centre) - radius_m,
