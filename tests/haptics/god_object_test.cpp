@@ -71,6 +71,25 @@ TEST_CASE("god-object: in a corner of two and of three planes it is where the ex
         CHECK(n > 100);
 }
 
+TEST_CASE("god-object: in an acute corner both planes hold it at the exact point") {
+    Bench b; // walls 60 degrees apart that meet in the y axis
+    const double c = 0.5, s = std::sqrt(0.75);
+    b.quad({0, -0.1, 0}, {0.1, -0.1, 0}, {0.1, 0.1, 0}, {0, 0.1, 0});
+    b.quad({0, -0.1, 0}, {0, 0.1, 0}, {0.1 * c, 0.1, 0.1 * s}, {0.1 * c, -0.1, 0.1 * s});
+    const std::vector<haptics::Plane> walls{{{0, 0, 1}, 0}, {{s, 0, -c}, 0}};
+    for (int i = 0; i < 50; ++i) {
+        b.state = {};
+        b.lead(step_god_object, {0.02, 0, 0.01});
+        const dvec3 device_m{1e-4 * i, 1e-3, -3e-3};
+        b.lead(step_god_object, device_m);
+        const dvec3 exact_m = haptics::nearest_in_planes(walls, device_m).place_m;
+        CHECK(glm::length(b.state.proxy_m - exact_m) < 1e-6);
+    }
+    CHECK(b.state.contacts == 1); // the last ones only lean on the floor
+    b.lead(step_god_object, {-5e-3, 0, 1e-3});
+    CHECK(b.state.contacts == 2);
+}
+
 TEST_CASE("god-object: a line that meets a crack passes") {
     Bench b;
     b.quad({-0.1, -0.1, 0}, {-1e-6, -0.1, 0}, {-1e-6, 0.1, 0}, {-0.1, 0.1, 0});
