@@ -129,13 +129,14 @@ void add_levels(CLI::App& study) {
 
 } // namespace
 
-void add_study(CLI::App& app, int&) {
+void add_study(CLI::App& app, int& exit_code) {
     auto a = std::make_shared<StudyArguments>();
     CLI::App* c = app.add_subcommand("study", "The charts: CSV and one page each");
     c->require_subcommand(1);
     add_coupling(*c, a);
     add_organ(*c);
     add_levels(*c);
+    add_failures_study(*c, exit_code);
 }
 
 } // namespace sim

@@ -1,0 +1,107 @@
+#include "sim/study/failures_study.h"
+
+#include "sim/io/files.h"
+#include "sim/study/failure_bench.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <stdexcept>
+
+namespace sim {
+namespace {
+
+/// One group of scenes: with a method, or of itself.
+struct Group {
+    std::string_view scene, about;
+    void (*with_method)(const ContactMethod&, std::uint64_t, failure::Rows&) = nullptr;
+    void (*alone)(std::uint64_t, failure::Rows&) = nullptr;
+};
+
+// To add scenes, add a line; what measures rows in its own way converts them to FailureRow.
+constexpr std::array kGroups{
+    Group{"F1", "a plate of 2 mm is pushed through", failure::plate},
+    Group{"F2", "inside a box, across the bisector of an edge", failure::voronoi},
+    Group{"F3", "a crack of 1 um; a vertex of 8 triangles", failure::cracks},
+    Group{"F4", "a surface that jumps at 50 Hz", failure::moving},
+    Group{"F5", "concave corners", failure::concave, failure::projections},
+    Group{"F6", "a ridge of 20 degrees", failure::wedge, failure::stale_plane},
+    Group{"F7", "friction", failure::friction, failure::signum_friction},
+    Group{"F8", "a membrane of 0.5 mm is crossed", failure::membrane},
+};
+
+void check(const FailureOptions& options) {
+    std::string known;
+    for (const Group& group : kGroups)
+        known += fmt::format("{}{}", known.empty() ? "" : ", ", group.scene);
+    for (const std::string& name : options.scenes)
+        if (std::none_of(kGroups.begin(), kGroups.end(),
+                         [&](const Group& g) { return g.scene == name; }))
+            throw std::invalid_argument(
+                fmt::format("failure scene \"{}\": it is one of {}", name, known));
+}
+
+std::string_view behaviour(const FailureRow& row) {
+    if (!row.passed)
+        return "UNEXPECTED";
+    return row.wrong_expected ? "fails as known" : "right";
+}
+
+} // namespace
+
+std::vector<FailureRow> run_failures_study(const FailureOptions& options) {
+    check(options);
+    failure::Rows rows;
+    for (const Group& group : kGroups) {
+        if (!options.scenes.empty() && std::find(options.scenes.begin(), options.scenes.end(),
+                                                 group.scene) == options.scenes.end())
+            continue;
+        if (group.with_method)
+            for (const ContactMethod& method : kContactMethods)
+                group.with_method(method, options.seed, rows);
+        if (group.alone)
+            group.alone(options.seed, rows);
+    }
+    return rows.row;
+}
+
+std::string failures_table(const std::vector<FailureRow>& rows) {
+    std::string text;
+    for (const FailureRow& r : rows)
+        text += fmt::format("{:<4} {:<24} {:<48} {:>11.4g} {} {:<11.4g} {:<14} {:+.2g}\n", r.scene,
+                            r.method, r.quantity, r.measured, r.near ? "~ " : "<=", r.bound,
+                            behaviour(r), r.margin);
+    return text;
+}
+
+void write_failures_study(const FailureOptions& options, const std::vector<FailureRow>& rows,
+                          const std::filesystem::path& out) {
+    std::filesystem::create_directories(out);
+    std::string csv = "scene,method,quantity,measured,bound,near,tolerance,wrong_expected,passed,"
+                      "margin\n";
+    std::string page = fmt::format(
+        "# Failure scenes\n\nEach contact method in scenes where methods are known to fail; seed "
+        "{}. \"fails as known\": the published weakness shows where theory says, \"right\": it "
+        "stays within the bound. ~: theory's value, within the tolerance.\n",
+        options.seed);
+    std::string scene;
+    for (const FailureRow& r : rows) {
+        csv += fmt::format("{},{},\"{}\",{:.9g},{:.9g},{},{:.4g},{},{},{:.4g}\n", r.scene, r.method,
+                           r.quantity, r.measured, r.bound, int{r.near}, r.tolerance,
+                           int{r.wrong_expected}, int{r.passed}, r.margin);
+        if (r.scene != scene) {
+            scene = r.scene;
+            const auto group = std::find_if(kGroups.begin(), kGroups.end(),
+                                            [&](const Group& g) { return g.scene == scene; });
+            page += fmt::format("\n## {}: {}\n\n| method | quantity | measured | bound | behaviour "
+                                "| margin |\n|---|---|---|---|---|---|\n",
+                                scene, group->about);
+        }
+        page +=
+            fmt::format("| {} | {} | {:.4g} | {} {:.4g} | {} | {:+.2g} |\n", r.method, r.quantity,
+                        r.measured, r.near ? "~" : "<=", r.bound, behaviour(r), r.margin);
+    }
+    write_text(out / "failures.csv", csv);
+    write_text(out / "failures.md", page);
+}
+
+} // namespace sim
