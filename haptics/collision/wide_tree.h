@@ -22,6 +22,7 @@
 #include "haptics/collision/reach.h"
 
 #include <bit>
+#include <span>
 #include <vector>
 
 namespace haptics {
@@ -103,6 +104,17 @@ SurfaceHit closest_within(const WideTree& tree, const MeshView& mesh, WideRing& 
                           const glm::dvec3& place_m, double radius_m) noexcept;
 SurfaceHit closest_within(const WideTree& tree, const MeshView& mesh, const glm::dvec3& place_m,
                           double radius_m) noexcept;
+
+struct NearTriangle {
+    std::uint32_t triangle = kNoSurface;
+    double least_m = 0.0; // not farther than this it may be, nearer not
+};
+
+/// The triangles of the mesh as it is now that come within a radius of a place: all of them, and
+/// maybe some that are farther by a rounding; in no particular order. Returns how many, also those
+/// for which `out` had no room. Its ring should not be one that closest_within uses.
+std::size_t triangles_within(const WideTree& tree, WideRing& ring, const glm::dvec3& place_m,
+                             double radius_m, std::span<NearTriangle> out) noexcept;
 
 /// Which instruction set the questions are answered with, e.g. "AVX2".
 const char* wide_tree_instructions() noexcept;

@@ -9,7 +9,7 @@
 // is not finite gives no force and leaves the state as it was.
 #pragma once
 
-#include "haptics/collision/mesh_view.h"
+#include "haptics/collision/wide_tree.h"
 
 #include <array>
 #include <cstdint>
@@ -42,6 +42,9 @@ struct ProxyState {
     int contacts = 0;
     std::array<ProxyContact, kMostProxyContacts> contact{};
     std::uint32_t witness = kNoSurface; // the triangle nearest last time: where to look first
+    // of step_safe_proxy: what it moved in the last tick, and the leaves around it
+    double step_m = 0.0;
+    WideRing ring{};
 };
 
 } // namespace haptics

@@ -1,0 +1,77 @@
+#include "haptics/contact/path_planes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+namespace haptics {
+namespace {
+
+using glm::dvec3;
+
+// Any method but ours: boxes say who may be near, the triangles themselves who is.
+std::size_t gather(const CollisionIndex& index, const MeshView& mesh, const dvec3& centre_m,
+                   double reach_m, WideRing& ring, std::span<NearTriangle> out) noexcept {
+    if (const auto* tree = std::get_if<WideTree>(&index))
+        return triangles_within(*tree, ring, centre_m, reach_m, out);
+    std::size_t found = 0;
+    Reach reach{centre_m, centre_m, reach_m};
+    std::visit(
+        [&](const auto& method) {
+            visit(method, reach, [&](std::uint32_t t) {
+                for (std::size_t i = 0; i < std::min(found, out.size()); ++i)
+                    if (out[i].triangle == t)
+                        return; // a method may visit a triangle twice
+                const TrianglePoint nearest = nearest_on_triangle(mesh.corners(t), centre_m);
+                const double distance = std::sqrt(nearest.distance2_m2);
+                if (!(distance <= reach_m))
+                    return;
+                if (found < out.size())
+                    out[found] = {t, distance * (1.0 - 1e-12)};
+                ++found;
+            });
+        },
+        index);
+    return found;
+}
+
+} // namespace
+
+void look_around(const CollisionIndex& index, const MeshView& mesh, const dvec3& centre_m,
+                 double reach_m, double least_m, WideRing& ring, Neighbourhood& out) noexcept {
+    std::size_t found = 0;
+    for (int attempt = 0; attempt < 12; ++attempt) {
+        found = gather(index, mesh, centre_m, reach_m, ring, out.near);
+        if (found <= out.near.size() || reach_m <= least_m)
+            break;
+        reach_m = std::max(least_m, attempt < 10 ? 0.5 * (reach_m + least_m) : least_m);
+    }
+    out.reach_m = reach_m;
+    out.count = static_cast<int>(std::min(found, out.near.size()));
+    for (int i = 0; i < out.count; ++i)
+        out.corner[i] = mesh.corners(out.near[i].triangle);
+}
+
+void HoldingPlanes::add(std::uint32_t triangle, const TrianglePoint& nearest, const dvec3& centre_m,
+                        double radius_m) noexcept {
+    const double distance = std::sqrt(nearest.distance2_m2);
+    if (!(distance > 0.0) || count == kRoom)
+        return;
+    const dvec3 n = (centre_m - nearest.place_m) / distance;
+    const Plane made{n, glm::dot(n, nearest.place_m) + radius_m};
+    for (int i = 0; i < count; ++i)
+        if (plane[i].normal == made.normal && plane[i].offset_m >= made.offset_m)
+            return;
+    plane[count] = made;
+    from[count++] = {triangle, nearest.weight, n};
+}
+
+double hover_m(const dvec3& centre_m, double radius_m, double step_m) noexcept {
+    const double coordinate = std::max(
+        {std::abs(centre_m.x), std::abs(centre_m.y), std::abs(centre_m.z), radius_m, step_m});
+    return 4.0 * kSweepGap * (radius_m > 0.0 ? std::min(radius_m, step_m) : step_m) +
+           64.0 * std::numeric_limits<double>::epsilon() * coordinate;
+}
+
+} // namespace haptics

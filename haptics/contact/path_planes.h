@@ -1,0 +1,44 @@
+// haptics/contact/path_planes.h
+// What a ball's path meets among a few triangles, and the planes that keep it off. A part of
+// safe_proxy.h. Real-time safe.
+#pragma once
+
+#include "haptics/collision/index.h"
+#include "haptics/contact/plane_qp.h"
+#include "haptics/contact/proxy_method.h"
+
+namespace haptics {
+
+/// Triangles that a ball may meet within some way of where it is.
+struct Neighbourhood {
+    static constexpr int kRoom = 256;
+    int count = 0;
+    double reach_m = 0.0; // from the centre; beyond it nothing is known
+    std::array<NearTriangle, kRoom> near;
+    std::array<TriangleCorners, kRoom> corner;
+};
+
+/// Those within `reach_m` of `centre_m`; if there are more than there is room for, fewer, and a
+/// shorter reach, but never shorter than `least_m` unless even there are too many (then the
+/// nearest ones).
+void look_around(const CollisionIndex& index, const MeshView& mesh, const glm::dvec3& centre_m,
+                 double reach_m, double least_m, WideRing& ring, Neighbourhood& out) noexcept;
+
+/// Planes that hold the ball now, with the surface points they come from.
+struct HoldingPlanes {
+    static constexpr int kRoom = 16;
+    int count = 0;
+    std::array<Plane, kRoom> plane;
+    std::array<ProxyContact, kRoom> from;
+
+    /// The plane that touches the triangle, grown by `radius_m`, at the point nearest to
+    /// `centre_m`. Nothing if there is no direction, no room, or the same plane already.
+    void add(std::uint32_t triangle, const TrianglePoint& nearest, const glm::dvec3& centre_m,
+             double radius_m) noexcept;
+};
+
+/// Rests as far off a surface as this; less is a touch. A share of the radius, or for a point of
+/// the step it takes, and the rounding of coordinates.
+double hover_m(const glm::dvec3& centre_m, double radius_m, double step_m) noexcept;
+
+} // namespace haptics

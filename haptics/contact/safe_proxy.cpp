@@ -1,0 +1,217 @@
+#include "haptics/contact/safe_proxy.h"
+
+#include "haptics/contact/path_planes.h"
+#include "haptics/contact/proxy_parts.h"
+#include "haptics/contact/ride_along.h"
+
+namespace haptics {
+namespace {
+
+using glm::dvec3;
+
+constexpr int kMostSteps = 6;   // straight ones in a tick
+constexpr int kMostTouches = 8; // that turn one of them aside
+
+struct Walk {
+    const ProxyInput& in;
+    double hover_m;   // this far off it rests,
+    double touch_m;   // radius and half the hover: what a path has to keep
+    double longest_m; // step that the neighbourhood is good for
+    bool slid;        // in the last tick
+};
+
+// Coulomb in a proxy's terms: the way along the surface is the tangential force, from the device
+// to the place without friction the normal one, both over k (Ruspini et al. 1997).
+dvec3 held_back(const Walk& walk, const dvec3& centre_m, const dvec3& smooth_m,
+                bool& sliding) noexcept {
+    const dvec3 normal_m = smooth_m - walk.in.device_m, way_m = smooth_m - centre_m;
+    const double push_m = glm::length(normal_m);
+    if (!(push_m > 0.0) || !(walk.in.static_friction > 0.0 || walk.in.dynamic_friction > 0.0))
+        return smooth_m;
+    const dvec3 n = normal_m / push_m;
+    const dvec3 out_m = glm::dot(way_m, n) * n, along_m = way_m - out_m;
+    const double along = glm::length(along_m), left = walk.in.dynamic_friction * push_m;
+    const double grip =
+        walk.slid || sliding ? left : std::max(walk.in.static_friction * push_m, left);
+    if (along <= grip)
+        return centre_m + out_m;
+    sliding = true;
+    return centre_m + out_m + (1.0 - left / along) * along_m;
+}
+
+// Planes of what the ball touches where it is, and of the nearest triangle, which will most likely
+// hold it where it goes.
+HoldingPlanes touching(const Neighbourhood& around, const Walk& walk,
+                       const dvec3& centre_m) noexcept {
+    HoldingPlanes out;
+    const double rest_m = walk.in.radius_m + walk.hover_m;
+    int nearest = -1;
+    double nearest_m = rest_m + walk.longest_m;
+    for (int i = 0; i < around.count; ++i) {
+        if (around.near[i].least_m > nearest_m)
+            continue;
+        const TrianglePoint at = nearest_on_triangle(around.corner[i], centre_m);
+        const double distance = std::sqrt(at.distance2_m2);
+        if (distance <= rest_m + walk.hover_m)
+            out.add(around.near[i].triangle, at, centre_m, rest_m);
+        if (distance < nearest_m) {
+            nearest = i;
+            nearest_m = std::max(distance, rest_m + walk.hover_m);
+        }
+    }
+    if (out.count == 0 && nearest >= 0)
+        out.add(around.near[nearest].triangle,
+                nearest_on_triangle(around.corner[nearest], centre_m), centre_m, rest_m);
+    return out;
+}
+
+// A triangle all of which lies behind a plane that both ends of the path keep cannot be met.
+bool behind_a_plane(const HoldingPlanes& planes, const TriangleCorners& corner,
+                    double touch_m) noexcept {
+    for (int i = 0; i < planes.count; ++i) {
+        const Plane& p = planes.plane[i];
+        if (std::max({glm::dot(p.normal, corner[0]), glm::dot(p.normal, corner[1]),
+                      glm::dot(p.normal, corner[2])}) <= p.offset_m - touch_m)
+            return true;
+    }
+    return false;
+}
+
+struct FirstTouch {
+    int index = -1; // in the neighbourhood
+    TriangleSweep sweep;
+};
+
+FirstTouch first_touch(const Neighbourhood& around, const Walk& walk, const HoldingPlanes& planes,
+                       const dvec3& looked_m, const dvec3& from_m, const dvec3& to_m) noexcept {
+    FirstTouch first;
+    const double way_m = glm::length(to_m - from_m);
+    const double off_m = std::max(glm::length(from_m - looked_m), glm::length(to_m - looked_m));
+    for (int i = 0; i < around.count; ++i) {
+        if (around.near[i].least_m > walk.touch_m + std::min(off_m, way_m + off_m) ||
+            behind_a_plane(planes, around.corner[i], walk.touch_m))
+            continue;
+        const TriangleSweep sweep =
+            sweep_ball({around.corner[i], around.corner[i]}, from_m, to_m, walk.touch_m);
+        if (sweep.time <= 1.0 && sweep.time < first.sweep.time)
+            first = {i, sweep};
+    }
+    return first;
+}
+
+enum class Step { arrived, shortened, blocked };
+
+// One straight step of the centre, turned aside by what it would meet.
+Step step(const Neighbourhood& around, const Walk& walk, const dvec3& looked_m,
+          HoldingPlanes& planes, dvec3& centre_m, bool& sliding) noexcept {
+    for (int touch = 0; touch <= kMostTouches; ++touch) {
+        const PlaneSolution nearest = nearest_in_planes(
+            std::span<const Plane>(planes.plane).first(planes.count), walk.in.device_m);
+        if (!nearest.feasible)
+            return Step::blocked; // held from all sides
+        bool slides = sliding;
+        const dvec3 wanted_m = nearest.actives > 0
+                                   ? held_back(walk, centre_m, nearest.place_m, slides)
+                                   : nearest.place_m;
+        const double way_m = glm::length(wanted_m - centre_m);
+        const bool too_far = way_m > walk.longest_m;
+        const dvec3 to_m =
+            too_far ? centre_m + walk.longest_m / way_m * (wanted_m - centre_m) : wanted_m;
+        const FirstTouch met = first_touch(around, walk, planes, looked_m, centre_m, to_m);
+        if (met.index < 0 || touch == kMostTouches) {
+            centre_m = met.index < 0 ? to_m : centre_m + met.sweep.time * (to_m - centre_m);
+            sliding = slides;
+            return too_far || met.index >= 0 ? Step::shortened : Step::arrived;
+        }
+        const dvec3 there_m = centre_m + met.sweep.time * (to_m - centre_m);
+        const int before = planes.count;
+        planes.add(around.near[met.index].triangle, met.sweep.on_triangle, there_m,
+                   walk.in.radius_m + walk.hover_m);
+        if (planes.count == before) { // nothing new to turn aside by: as far as it is free
+            centre_m = there_m;
+            return Step::shortened;
+        }
+    }
+    return Step::blocked;
+}
+
+void tell_contacts(const HoldingPlanes& planes, const ProxyInput& in, double hover_m,
+                   ProxyState& state) noexcept {
+    state.contacts = 0;
+    for (int i = 0; i < planes.count && state.contacts < kMostProxyContacts; ++i) {
+        const Plane& p = planes.plane[i];
+        if (glm::dot(p.normal, state.proxy_m) - p.offset_m <= 2.0 * hover_m &&
+            glm::dot(p.normal, in.device_m) < p.offset_m)
+            state.contact[state.contacts++] = planes.from[i];
+    }
+    state.touching = state.contacts > 0;
+    if (state.touching)
+        state.witness = state.contact[0].triangle;
+}
+
+// To where the device pulls, as far as a tick allows.
+void approach(const CollisionIndex& index, const MeshView& mesh, const ProxyInput& in,
+              ProxyState& state) noexcept {
+    const dvec3 start_m = state.proxy_m;
+    const double pull_m = glm::length(in.device_m - start_m);
+    // as far as it came last time, and half more; a proxy in the air goes all the way
+    const double guess_m = state.touching ? 1.5 * state.step_m + 0.02 * pull_m : pull_m;
+    Walk walk{.in = in,
+              .hover_m = hover_m(start_m, in.radius_m, std::max(pull_m, state.step_m)),
+              .touch_m = 0.0,
+              .longest_m = std::min(guess_m, pull_m),
+              .slid = state.sliding};
+    walk.touch_m = in.radius_m + 0.5 * walk.hover_m;
+    const double least_m = in.radius_m + 3.0 * walk.hover_m;
+
+    Neighbourhood around;
+    HoldingPlanes planes;
+    dvec3 looked_m = start_m;
+    bool sliding = false;
+    double known_m = -1.0; // how far from `looked_m` the centre may be
+    for (int i = 0; i < kMostSteps; ++i) {
+        const double gone_m = glm::length(state.proxy_m - looked_m);
+        if (gone_m + 0.5 * walk.longest_m > known_m) {
+            looked_m = state.proxy_m;
+            look_around(index, mesh, looked_m, least_m + 2.0 * walk.longest_m, least_m, state.ring,
+                        around);
+            known_m = around.reach_m - least_m;
+        }
+        Walk now = walk;
+        now.longest_m = std::min(walk.longest_m, known_m - glm::length(state.proxy_m - looked_m));
+        planes = touching(around, now, state.proxy_m);
+        const dvec3 from_m = state.proxy_m;
+        const Step done = step(around, now, looked_m, planes, state.proxy_m, sliding);
+        const double way_m = glm::length(state.proxy_m - from_m);
+        if (done == Step::blocked || way_m <= walk.hover_m ||
+            (done == Step::arrived && i > 0 && way_m < 1e-3 * pull_m))
+            break;
+        if (done == Step::shortened)
+            walk.longest_m = std::min(2.0 * walk.longest_m, pull_m);
+    }
+    state.sliding = sliding;
+    state.step_m = glm::length(state.proxy_m - start_m);
+    tell_contacts(planes, in, walk.hover_m, state);
+}
+
+} // namespace
+
+void step_safe_proxy(const CollisionIndex& index, const MeshView& mesh, const ProxyInput& in,
+                     ProxyState& state) noexcept {
+    state.force_n = dvec3{0.0};
+    if (!finite(in) || !(in.radius_m >= 0.0))
+        return;
+    if (!state.started) {
+        state = {};
+        state.started = true;
+        state.proxy_m = in.device_m;
+    }
+    if (!mesh.before_m.empty())
+        ride_along(index, mesh, in, state);
+    approach(index, mesh, in, state);
+    state.sliding = state.sliding && state.touching;
+    if (state.touching)
+        state.force_n = in.stiffness_npm * (state.proxy_m - in.device_m);
+}
+
+} // namespace haptics
