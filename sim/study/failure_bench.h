@@ -82,5 +82,6 @@ void membrane(const ContactMethod& method, std::uint64_t seed, Rows& rows); // F
 void projections(std::uint64_t seed, Rows& rows);                           // F5
 void stale_plane(std::uint64_t seed, Rows& rows);                           // F6
 void signum_friction(std::uint64_t seed, Rows& rows);                       // F7
+void inverted_tets(std::uint64_t seed, Rows& rows);                         // F9
 
 } // namespace sim::failure

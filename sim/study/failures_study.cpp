@@ -27,6 +27,7 @@ constexpr std::array kGroups{
     Group{"F6", "a ridge of 20 degrees", failure::wedge, failure::stale_plane},
     Group{"F7", "friction", failure::friction, failure::signum_friction},
     Group{"F8", "a membrane of 0.5 mm is crossed", failure::membrane},
+    Group{"F9", "inverted tetrahedra", nullptr, failure::inverted_tets},
 };
 
 void check(const FailureOptions& options) {
