@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
     sim::add_note(app, exit_code);
     sim::add_scene(app, exit_code);
     sim::add_study(app, exit_code);
+    sim::add_bench(app, exit_code);
     sim::add_import(app, exit_code);
     sim::add_devices(app, exit_code);
     try {

@@ -214,8 +214,9 @@ std::vector<dvec3> contact_path(const ContactWorkload& work, double seconds, std
         const double a = std::sin(kTurn * 0.23 * t + phase[0]);
         const double b = std::sin(kTurn * 0.31 * t + phase[1]);
         const double depth_m = kMean_m - kSwing_m * std::cos(kTurn * 0.7 * t + phase[2]);
-        const double hop = (std::fmod(t, kHopEvery_s) - (kHopEvery_s - kHopLasts_s)) / kHopLasts_s;
-        const double hop_m = hop > 0.0 ? 0.5 * kHop_m * (1.0 - std::cos(kTurn * hop)) : 0.0;
+        const double hop = std::abs(std::remainder(t, kHopEvery_s)) / (0.5 * kHopLasts_s);
+        const double hop_m =
+            hop < 1.0 ? 0.5 * kHop_m * (1.0 + std::cos(std::numbers::pi * hop)) : 0.0;
         const double tremble = kTurn * 8.0 * t + phase[3];
         const SkinPlace skin =
             work.organ ? organ_skin(work.ripples,

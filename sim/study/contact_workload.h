@@ -76,8 +76,9 @@ int side_of(const ContactWorkload& work, std::span<const glm::dvec3> vertex_m,
 
 /// Where the device commands the centre of a ball, one place per tick: a Lissajous figure over the
 /// resting smooth skin, up to 100 mm/s fast, from 1 mm off to 4 mm deep with a trembling of 0.2 mm
-/// at 8 Hz in it, and in the last 0.3 s of every 2 s a hop of 20 mm away. Depth 0: the ball just
-/// touches. Throws std::invalid_argument unless radius >= 0 and 0 < seconds <= 3600.
+/// at 8 Hz in it, and within 0.15 s of every even second, the first included, a hop of 20 mm away:
+/// it begins free. Depth 0: the ball just touches. Throws std::invalid_argument unless radius >= 0
+/// and 0 < seconds <= 3600.
 std::vector<glm::dvec3> contact_path(const ContactWorkload& work, double seconds,
                                      std::uint64_t seed, double radius_m);
 

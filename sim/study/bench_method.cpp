@@ -1,0 +1,54 @@
+#include "sim/study/bench_method.h"
+
+#include "haptics/contact/god_object.h"
+#include "haptics/contact/penalty.h"
+#include "haptics/contact/virtual_proxy.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <stdexcept>
+
+namespace sim {
+namespace {
+
+using haptics::CollisionIndex;
+using haptics::MeshView;
+using haptics::ProxyInput;
+using haptics::ProxyState;
+
+using Step = void (*)(const CollisionIndex&, const MeshView&, const ProxyInput&,
+                      ProxyState&) noexcept;
+
+Step classical(const std::string& contact) {
+    if (contact == "none")
+        return nullptr;
+    if (contact == "penalty")
+        return haptics::step_penalty;
+    if (contact == "god-object")
+        return haptics::step_god_object;
+    if (contact == "virtual-proxy")
+        return haptics::step_virtual_proxy;
+    throw std::invalid_argument(
+        fmt::format("contact method '{}': accepted: {}", contact, fmt::join(kContactNames, ", ")));
+}
+
+} // namespace
+
+BenchMethod make_bench_method(const std::string& method, const std::string& contact,
+                              const MeshView& mesh) {
+    const Step step = classical(contact);
+    const auto index = std::make_shared<CollisionIndex>(haptics::make_index(method, mesh));
+    BenchMethod out;
+    out.refit = [index](const MeshView& now) { haptics::refit(*index, now); };
+    out.closest = [index](const MeshView& now, const glm::dvec3& place_m, double reach_m) {
+        return haptics::closest_within(*index, now, place_m, reach_m);
+    };
+    if (step != nullptr)
+        out.step = [index, step](const MeshView& now, const ProxyInput& input, ProxyState& state) {
+            step(*index, now, input, state);
+        };
+    out.point = contact == "god-object";
+    return out;
+}
+
+} // namespace sim
