@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <span>
 
 namespace haptics {
 namespace {
@@ -12,6 +13,7 @@ using glm::dvec3;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMostAdvances = 64; // each is exact against a plane; a handful is usual
+constexpr int kPatience = 4;      // advances before a turning plane is tried
 
 double square(const dvec3& v) noexcept {
     return glm::dot(v, v);
@@ -105,6 +107,21 @@ struct Apart {
     }
 };
 
+/// Whether the directions turned evenly from `n` to `n_end` keep two things farther apart than
+/// `radius` all the while, where `from` and `to` are the ways between their corners, two by two, at
+/// both ends. Along a direction that turns, each gap is a quadratic in time: it stays above its
+/// Bernstein coefficients. A fixed direction would have a face that turns under a point which
+/// hovers over it come through.
+bool turn_apart(const dvec3& n, const dvec3& n_end, std::span<const dvec3> from,
+                std::span<const dvec3> to, double radius) noexcept {
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        const double middle = 0.5 * (glm::dot(n, to[i]) + glm::dot(n_end, from[i]));
+        if (!(std::min({glm::dot(n, from[i]), middle, glm::dot(n_end, to[i])}) > radius))
+            return false;
+    }
+    return true;
+}
+
 /// The gap at which things count as touching: a rounding of their coordinates, or a share of what
 /// the question is about.
 double enough_gap(const MovingTriangle& triangle, double coordinate_m, double motion_m,
@@ -138,6 +155,28 @@ dvec3 direction_to(const TrianglePoint& near, const TriangleCorners& corner, con
     }
     const double length = glm::length(across);
     return length > 0.0 && std::isfinite(length) ? across / length : n;
+}
+
+/// The longest of the next 1, 1/2, 1/4 ... of the remaining time in which a turning direction keeps
+/// a moving ball off the triangle; 0: none of them. `n`: the direction now.
+double turning_advance(const MovingTriangle& triangle, const dvec3& from_m, const dvec3& motion,
+                       double radius_m, double time, const dvec3& n) noexcept {
+    const TriangleCorners now = triangle.at(time);
+    const dvec3 centre = from_m + time * motion;
+    for (double step = 1.0 - time; step > 1e-3; step *= 0.5) {
+        const TriangleCorners end = triangle.at(time + step);
+        const dvec3 centre_end = from_m + (time + step) * motion;
+        const TrianglePoint near = nearest_on_triangle(end, centre_end);
+        const double distance = std::sqrt(near.distance2_m2);
+        if (!(distance > radius_m))
+            continue;
+        const std::array<dvec3, 3> from{now[0] - centre, now[1] - centre, now[2] - centre};
+        const std::array<dvec3, 3> to{end[0] - centre_end, end[1] - centre_end,
+                                      end[2] - centre_end};
+        if (turn_apart(n, direction_to(near, end, centre_end, distance), from, to, radius_m))
+            return step;
+    }
+    return 0.0;
 }
 
 } // namespace
@@ -235,8 +274,11 @@ TriangleSweep sweep_ball(const MovingTriangle& triangle, const dvec3& from_m, co
             out.time = time;
             return out;
         }
-        time += apart.time;
-        if (!(time <= 1.0))
+        const double turned = advance < kPatience || apart.time > (1.0 - time) / 16.0
+                                  ? 0.0
+                                  : turning_advance(triangle, from_m, motion, radius_m, time, n);
+        time += std::max(apart.time, turned);
+        if (!(time < 1.0))
             return out;
     }
     out.time = time;

@@ -37,8 +37,9 @@ struct HoldingPlanes {
              double radius_m) noexcept;
 };
 
-/// Rests as far off a surface as this; less is a touch. A share of the radius, or for a point of
-/// the step it takes, and the rounding of coordinates.
-double hover_m(const glm::dvec3& centre_m, double radius_m, double step_m) noexcept;
+/// How far off a surface a proxy rests, for as long as it lives; half of it is a touch. A share of
+/// the ball and of the mesh's first edges, and the rounding of coordinates: far more than what a
+/// sweep takes for contact, far less than anybody feels.
+double hover_of(const MeshView& mesh, const ProxyInput& in) noexcept;
 
 } // namespace haptics

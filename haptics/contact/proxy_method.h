@@ -42,8 +42,10 @@ struct ProxyState {
     int contacts = 0;
     std::array<ProxyContact, kMostProxyContacts> contact{};
     std::uint32_t witness = kNoSurface; // the triangle nearest last time: where to look first
-    // of step_safe_proxy: what it moved in the last tick, and the leaves around it
-    double step_m = 0.0;
+    // of step_safe_proxy: how far it came in the last tick, how far off a surface it rests, where
+    // the device was, what is around
+    double step_m = 0.0, hover_m = 0.0;
+    glm::dvec3 device_m{0.0};
     WideRing ring{};
 };
 

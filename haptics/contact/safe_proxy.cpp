@@ -151,15 +151,15 @@ void tell_contacts(const HoldingPlanes& planes, const ProxyInput& in, double hov
 
 // To where the device pulls, as far as a tick allows.
 void approach(const CollisionIndex& index, const MeshView& mesh, const ProxyInput& in,
-              ProxyState& state) noexcept {
+              double most_m, ProxyState& state) noexcept {
     const dvec3 start_m = state.proxy_m;
     const double pull_m = glm::length(in.device_m - start_m);
     // as far as it came last time, and half more; a proxy in the air goes all the way
     const double guess_m = state.touching ? 1.5 * state.step_m + 0.02 * pull_m : pull_m;
     Walk walk{.in = in,
-              .hover_m = hover_m(start_m, in.radius_m, std::max(pull_m, state.step_m)),
+              .hover_m = state.hover_m,
               .touch_m = 0.0,
-              .longest_m = std::min(guess_m, pull_m),
+              .longest_m = std::min({guess_m, pull_m, most_m}),
               .slid = state.sliding};
     walk.touch_m = in.radius_m + 0.5 * walk.hover_m;
     const double least_m = in.radius_m + 3.0 * walk.hover_m;
@@ -169,7 +169,8 @@ void approach(const CollisionIndex& index, const MeshView& mesh, const ProxyInpu
     dvec3 looked_m = start_m;
     bool sliding = false;
     double known_m = -1.0; // how far from `looked_m` the centre may be
-    for (int i = 0; i < kMostSteps; ++i) {
+    for (int i = 0; i < kMostSteps && most_m > 0.0; ++i) {
+        walk.longest_m = std::min(walk.longest_m, most_m);
         const double gone_m = glm::length(state.proxy_m - looked_m);
         if (gone_m + 0.5 * walk.longest_m > known_m) {
             looked_m = state.proxy_m;
@@ -183,6 +184,7 @@ void approach(const CollisionIndex& index, const MeshView& mesh, const ProxyInpu
         const dvec3 from_m = state.proxy_m;
         const Step done = step(around, now, looked_m, planes, state.proxy_m, sliding);
         const double way_m = glm::length(state.proxy_m - from_m);
+        most_m -= way_m;
         if (done == Step::blocked || way_m <= walk.hover_m ||
             (done == Step::arrived && i > 0 && way_m < 1e-3 * pull_m))
             break;
@@ -204,14 +206,22 @@ void step_safe_proxy(const CollisionIndex& index, const MeshView& mesh, const Pr
     if (!state.started) {
         state = {};
         state.started = true;
-        state.proxy_m = in.device_m;
+        state.proxy_m = state.device_m = in.device_m;
+        state.hover_m = hover_of(mesh, in);
     }
+    const dvec3 start_m = state.proxy_m;
     if (!mesh.before_m.empty())
         ride_along(index, mesh, in, state);
-    approach(index, mesh, in, state);
+    const double catch_up_m = in.stiffness_npm > 0.0 ? kCatchUp_n / in.stiffness_npm : 0.0;
+    const double ridden_m = glm::length(state.proxy_m - start_m);
+    approach(index, mesh, in,
+             glm::length(in.device_m - state.device_m) +
+                 std::max(catch_up_m - ridden_m, 0.2 * catch_up_m),
+             state);
+    state.device_m = in.device_m;
     state.sliding = state.sliding && state.touching;
-    if (state.touching)
-        state.force_n = in.stiffness_npm * (state.proxy_m - in.device_m);
+    // also in the air, until it has caught up
+    state.force_n = in.stiffness_npm * (state.proxy_m - in.device_m);
 }
 
 } // namespace haptics

@@ -15,6 +15,9 @@
 //      as the surface turns; what is left is done in the next tick.
 // A plane comes from a real touch only, so triangles beside the path, or behind an edge, hold
 // nothing up: it slides over convex edges and stops in concave ones.
+//   3. it does not jump: beyond the device's own way it comes no farther in a tick than what
+//      changes the force by kCatchUp_n. Off an edge or over a bump it catches up in a few ticks,
+//      and the force with it.
 // Subgoals and planes: Ruspini, Kolarov and Khatib 1997, to which moving triangles and the proof
 // of every step are added.
 #pragma once
@@ -23,6 +26,8 @@
 #include "haptics/contact/proxy_method.h"
 
 namespace haptics {
+
+inline constexpr double kCatchUp_n = 0.25;
 
 /// One tick. Any radius from 0. With a WideTree as index, the proxy's own ring is used.
 void step_safe_proxy(const CollisionIndex& index, const MeshView& mesh, const ProxyInput& in,

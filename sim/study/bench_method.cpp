@@ -2,6 +2,7 @@
 
 #include "haptics/contact/god_object.h"
 #include "haptics/contact/penalty.h"
+#include "haptics/contact/safe_proxy.h"
 #include "haptics/contact/virtual_proxy.h"
 
 #include <fmt/format.h>
@@ -19,7 +20,7 @@ using haptics::ProxyState;
 using Step = void (*)(const CollisionIndex&, const MeshView&, const ProxyInput&,
                       ProxyState&) noexcept;
 
-Step classical(const std::string& contact) {
+Step step_of(const std::string& contact) {
     if (contact == "none")
         return nullptr;
     if (contact == "penalty")
@@ -28,6 +29,8 @@ Step classical(const std::string& contact) {
         return haptics::step_god_object;
     if (contact == "virtual-proxy")
         return haptics::step_virtual_proxy;
+    if (contact == "ours")
+        return haptics::step_safe_proxy;
     throw std::invalid_argument(
         fmt::format("contact method '{}': accepted: {}", contact, fmt::join(kContactNames, ", ")));
 }
@@ -36,13 +39,18 @@ Step classical(const std::string& contact) {
 
 BenchMethod make_bench_method(const std::string& method, const std::string& contact,
                               const MeshView& mesh) {
-    const Step step = classical(contact);
+    const Step step = step_of(contact);
     const auto index = std::make_shared<CollisionIndex>(haptics::make_index(method, mesh));
     BenchMethod out;
     out.refit = [index](const MeshView& now) { haptics::refit(*index, now); };
     out.closest = [index](const MeshView& now, const glm::dvec3& place_m, double reach_m) {
         return haptics::closest_within(*index, now, place_m, reach_m);
     };
+    if (const auto* tree = std::get_if<haptics::WideTree>(index.get()))
+        out.closest = [index, tree, ring = std::make_shared<haptics::WideRing>()](
+                          const MeshView& now, const glm::dvec3& place_m, double reach_m) {
+            return haptics::closest_within(*tree, now, *ring, place_m, reach_m);
+        };
     if (step != nullptr)
         out.step = [index, step](const MeshView& now, const ProxyInput& input, ProxyState& state) {
             step(*index, now, input, state);

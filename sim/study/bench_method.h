@@ -14,8 +14,8 @@
 namespace sim {
 
 /// What acts on the ball. "none": the closest-point query alone.
-inline constexpr std::array<std::string_view, 4> kContactNames{"none", "penalty", "god-object",
-                                                               "virtual-proxy"};
+inline constexpr std::array<std::string_view, 5> kContactNames{"none", "penalty", "god-object",
+                                                               "virtual-proxy", "ours"};
 
 struct BenchMethod {
     /// To the mesh as it is now.

@@ -6,6 +6,7 @@
 
 #include "haptics/contact/god_object.h"
 #include "haptics/contact/penalty.h"
+#include "haptics/contact/safe_proxy.h"
 #include "haptics/contact/virtual_proxy.h"
 
 #include <filesystem>
@@ -27,6 +28,7 @@ inline constexpr std::array kContactMethods{
     ContactMethod{"penalty", haptics::step_penalty, false},
     ContactMethod{"god-object", haptics::step_god_object, false},
     ContactMethod{"virtual-proxy", haptics::step_virtual_proxy},
+    ContactMethod{"ours", haptics::step_safe_proxy},
 };
 
 struct FailureRow {
