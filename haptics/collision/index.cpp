@@ -33,6 +33,12 @@ CollisionIndex make_index(std::string_view name, const MeshView& mesh) {
     check(mesh);
     if (name == "brute-force")
         return make_brute_force(mesh);
+    if (name == "hash-grid")
+        return make_hash_grid(mesh);
+    if (name == "obb-tree")
+        return make_obb_tree(mesh);
+    if (name == "hybrid")
+        return make_hybrid(mesh);
     if (name == "ours")
         return make_wide_tree(mesh);
     std::string known;

@@ -5,6 +5,9 @@
 #pragma once
 
 #include "haptics/collision/brute_force.h"
+#include "haptics/collision/hash_grid.h"
+#include "haptics/collision/hybrid.h"
+#include "haptics/collision/obb_tree.h"
 #include "haptics/collision/queries.h"
 #include "haptics/collision/wide_tree.h"
 
@@ -15,12 +18,13 @@
 
 namespace haptics {
 
-using CollisionIndex = std::variant<BruteForce, WideTree>;
+using CollisionIndex = std::variant<BruteForce, HashGrid, ObbTree, Hybrid, WideTree>;
 
 /// Setup. `name`: one of kCollisionNames; throws std::invalid_argument otherwise, or for a
 /// triangle with a vertex that is not there or a vertex that is not finite.
 CollisionIndex make_index(std::string_view name, const MeshView& mesh);
-inline constexpr std::array<std::string_view, 2> kCollisionNames{"brute-force", "ours"};
+inline constexpr std::array<std::string_view, 5> kCollisionNames{"brute-force", "hash-grid",
+                                                                 "obb-tree", "hybrid", "ours"};
 
 /// After the vertices have moved. Covers both ends of the interval if the mesh has `before_m`.
 void refit(CollisionIndex& index, const MeshView& mesh) noexcept;

@@ -17,8 +17,9 @@ struct TrianglePoint {
     double distance2_m2 = 0.0; // square, to what was asked about
 };
 
-/// The point of a triangle nearest to `place_m`: by Voronoi regions (Ericson, Real-Time Collision
-/// Detection, 5.1.5); of a triangle without area, the nearest of its edges.
+/// The point of a triangle nearest to `place_m`: the foot of the perpendicular if that is inside,
+/// else the nearest of its edges (Ericson, Real-Time Collision Detection, 5.1). Off by some
+/// roundings of the coordinates and of the distance, also for slivers; without area, its edges.
 TrianglePoint nearest_on_triangle(const TriangleCorners& corner,
                                   const glm::dvec3& place_m) noexcept;
 
@@ -28,7 +29,8 @@ struct SegmentPair {
     glm::dvec3 place_m{0.0};   // there, on the segment
 };
 
-/// The nearest points of a triangle and a segment; if they cross, the crossing, at distance 0.
+/// The nearest points of a triangle and a segment; if they cross, the crossing, at distance 0 (of
+/// a segment that lies along a sliver, within a rounding of its plane: 1e-10 of its length).
 SegmentPair nearest_to_segment(const TriangleCorners& corner, const glm::dvec3& from_m,
                                const glm::dvec3& to_m) noexcept;
 
@@ -43,14 +45,20 @@ struct MovingSegment {
 };
 
 struct TriangleSweep {
-    double time = 2.0; // first touch, 0..1; 2: none. Never later than the true one
+    double time = 2.0; // first touch, 0..1; 2: none
     TrianglePoint on_triangle;
     double along = 0.0; // on a moving segment
+    bool hit() const noexcept { return time <= 1.0; }
 };
 
 /// First touch of a ball (a point: radius 0) moving from one place to another with a moving
-/// triangle, by conservative advancement: the time moves on by the gap over the largest closing
-/// speed, until the gap is a rounding of the coordinates or `kSweepGap` of radius and motion.
+/// triangle, by conservative advancement: time moves on by the gap over the largest closing speed
+/// along the direction that separates them. Never later than the true touch; the gap that is left
+/// then is below `kSweepGap` of the radius plus a rounding of the coordinates (a triangle that
+/// swings about the place may leave 1/128 of its motion).
+/// A ball in touch from the start, deep or not, is hit only if it gets deeper, by more than that
+/// gap: it may rest, slide and leave. A point that is on the triangle is always hit. What is not
+/// finite meets nothing.
 TriangleSweep sweep_ball(const MovingTriangle& triangle, const glm::dvec3& from_m,
                          const glm::dvec3& to_m, double radius_m) noexcept;
 
