@@ -6,6 +6,7 @@
 #include "sim/io/trajectory_file.h"
 #include "sim/study/bench_method.h"
 #include "sim/study/contact_bench.h"
+#include "sim/study/tick_times_json.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -43,19 +44,14 @@ ContactScene scene_of(const BenchArguments& a) {
     return recorded_scene(std::move(mesh.vertex_m), std::move(mesh.triangle), std::move(path_m));
 }
 
-ordered_json times_json(const TickTimes& t) {
-    return {{"n", t.n},           {"mean_ns", t.mean_ns},   {"p50_ns", t.p50_ns},
-            {"p99_ns", t.p99_ns}, {"p9999_ns", t.p9999_ns}, {"max_ns", t.max_ns}};
-}
-
 ordered_json bench_json(const BenchArguments& a, const ContactBench& b) {
     const ContactQuality& q = b.quality;
     return {{"method", a.options.method},
             {"contact_method", a.options.contact},
             {"triangles", b.triangles},
-            {"contact", times_json(b.contact)},
-            {"free", times_json(b.free)},
-            {"cold", times_json(b.cold)},
+            {"contact", tick_times_json(b.contact)},
+            {"free", tick_times_json(b.free)},
+            {"cold", tick_times_json(b.cold)},
             {"build_ms", b.build_ms},
             {"refit_ms", b.refit_ms},
             {"lost", q.lost},

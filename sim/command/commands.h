@@ -18,6 +18,7 @@ void add_note(CLI::App& app, int& exit_code);
 void add_scene(CLI::App& app, int& exit_code);
 void add_study(CLI::App& app, int& exit_code);
 void add_failures_study(CLI::App& study, int& exit_code); // a study
+void add_scaling_study(CLI::App& study, int& exit_code);  // a study
 void add_import(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);
 void add_devices(CLI::App& app, int& exit_code);

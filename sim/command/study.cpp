@@ -137,6 +137,7 @@ void add_study(CLI::App& app, int& exit_code) {
     add_organ(*c);
     add_levels(*c);
     add_failures_study(*c, exit_code);
+    add_scaling_study(*c, exit_code);
 }
 
 } // namespace sim

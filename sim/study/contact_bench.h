@@ -46,7 +46,7 @@ struct ContactBench {
     /// within the radius of the skin. cold: contact ticks before which the caches were driven out.
     TickTimes contact, free, cold;
     double build_ms = 0.0;
-    double refit_ms = 0.0; // mean over the frames of the run; at rest: once, after five
+    double refit_ms = 0.0; // mean over the frames of the run; at rest: median of nine
     ContactQuality quality;
     double distance_sum_m = 0.0; // query alone: of its answers over the contact ticks
     int missed = 0;              // query alone: contact ticks without an answer
@@ -57,7 +57,8 @@ struct ContactBench {
 /// The path is run once for the times (a tick of "none" is the query, of others the whole step),
 /// once untimed for the quality, so that the judge's queries warm no cache of the timed ones, and
 /// once more for the cold times if asked. The query alone is judged as the nearest-point method: a
-/// ball that is too deep is put a radius off the nearest skin. A method that treats the ball as a
+/// ball that is too deep is put a radius off the nearest skin. The judge's own nearest skin is
+/// found by brute force up to 2000 triangles, by "ours" beyond. A method that treats the ball as a
 /// point is judged with radius 0. Throws std::invalid_argument on unknown names and bad numbers.
 ContactBench run_contact_bench(const ContactScene& scene, const ContactBenchOptions& options);
 

@@ -142,7 +142,7 @@ bench::Peer make_embree(const haptics::MeshView& mesh, double reach_m, bool warm
                                  static_cast<double>(query.radius)};
     };
     return {.name = warm ? "embree-warm" : "embree",
-            .build_ms = 0.0,
+            .closest = true,
             .take = take,
             .refit = refit,
             .ask = ask};

@@ -1,5 +1,7 @@
 #include "tests/bench/peer.h"
 
+#include "sim/study/tick_times_json.h"
+
 #include <cstdlib>
 #include <exception>
 #include <fmt/format.h>
@@ -10,6 +12,8 @@ namespace {
 
 using glm::dvec3;
 using nlohmann::ordered_json;
+
+constexpr int kRefitsAtRest = 9;
 
 [[noreturn]] void usage(const std::string& what) {
     throw std::invalid_argument(what + "\nusage: organ:COUNT|sheet:COUNT [--seconds S] [--seed N] "
@@ -23,11 +27,6 @@ double number(const std::string& option, const std::string& text) {
     if (text.empty() || *end != '\0' || !(value >= 0.0 && value <= 1e9))
         usage(option + " '" + text + "' is not a number from 0");
     return value;
-}
-
-ordered_json times_json(const sim::TickTimes& t) {
-    return {{"n", t.n},           {"mean_ns", t.mean_ns},   {"p50_ns", t.p50_ns},
-            {"p99_ns", t.p99_ns}, {"p9999_ns", t.p9999_ns}, {"max_ns", t.max_ns}};
 }
 
 struct Times {
@@ -53,7 +52,8 @@ Times run_path(const Peer& peer, const PeerOptions& o, const sim::ContactWorkloa
             peer.take(skin.view(work));
             const std::uint64_t from = clock.start();
             peer.refit();
-            out.refit_ns.push_back(clock.ns(from, clock.stop()));
+            if (skin.moved)
+                out.refit_ns.push_back(clock.ns(from, clock.stop()));
         }
         const bool keep = cold == nullptr || (is_contact[tick] && contacts % o.cold_every == 0);
         if (cold != nullptr && keep)
@@ -119,11 +119,14 @@ ordered_json run_peer(const PeerOptions& o, const sim::ContactWorkload& work,
     sim::MovingSkin skin;
     follow(work, o.breathing, 0, skin);
     const std::uint64_t from = clock.start();
-    Peer peer = make(skin.view(work));
-    peer.build_ms = 1e-6 * clock.ns(from, clock.stop());
-    for (int i = 0; i < 5; ++i) { // the first is dearer
+    const Peer peer = make(skin.view(work));
+    const double build_ms = 1e-6 * clock.ns(from, clock.stop());
+    std::vector<double> refit_ns; // at rest; in motion the frames count
+    for (int i = 0; i < kRefitsAtRest; ++i) {
         peer.take(skin.view(work));
+        const std::uint64_t began = clock.start();
         peer.refit();
+        refit_ns.push_back(clock.ns(began, clock.stop()));
     }
     std::vector<char> is_contact;
     const Times hot = run_path(peer, o, work, clock, is_contact, nullptr);
@@ -134,12 +137,13 @@ ordered_json run_peer(const PeerOptions& o, const sim::ContactWorkload& work,
     return {{"method", peer.name},
             {"contact_method", "none"},
             {"triangles", work.triangle.size()},
-            {"contact", times_json(sim::tick_times(hot.contact_ns))},
-            {"free", times_json(sim::tick_times(hot.free_ns))},
-            {"cold", times_json(sim::tick_times(cold.contact_ns))},
-            {"build_ms", peer.build_ms},
-            {"refit_ms", 1e-6 * sim::tick_times(hot.refit_ns).mean_ns},
-            {"distance_sum_m", hot.distance_sum_m},
+            {"contact", tick_times_json(sim::tick_times(hot.contact_ns))},
+            {"free", tick_times_json(sim::tick_times(hot.free_ns))},
+            {"cold", tick_times_json(sim::tick_times(cold.contact_ns))},
+            {"build_ms", build_ms},
+            {"refit_ms", 1e-6 * (hot.refit_ns.empty() ? sim::tick_times(refit_ns).p50_ns
+                                                      : sim::tick_times(hot.refit_ns).mean_ns)},
+            {"distance_sum_m", peer.closest ? hot.distance_sum_m : 0.0},
             {"missed", hot.missed},
             {"reach_m", o.reach_m},
             {"clock_overhead_ns", clock.overhead_ns()}};

@@ -28,7 +28,7 @@ struct PeerOptions {
 /// Throws std::invalid_argument saying what is accepted.
 PeerOptions peer_options(int argc, char** argv);
 
-/// What a peer answers to one question. `distance_m` of a closest point: to the skin.
+/// What a peer answers to one question. `distance_m`: from the place to the skin that it found.
 struct PeerAnswer {
     bool hit = false;
     double distance_m = 0.0;
@@ -36,7 +36,7 @@ struct PeerAnswer {
 
 struct Peer {
     std::string name;
-    double build_ms = 0.0;
+    bool closest = true; // its question is the closest point, so that its distances can be compared
     std::function<void(const haptics::MeshView&)> take; // new places into its own form; not timed
     std::function<void()> refit;                        // to what it took
     std::function<PeerAnswer(const glm::dvec3&)> ask;   // what is timed
@@ -44,8 +44,8 @@ struct Peer {
 
 /// Runs the path once, hot; and once more with the caches evicted before every `cold_every`th
 /// contact tick if asked. A contact tick is one in which the centre is within or beyond the skin,
-/// or within the ball's radius of it. `distance_sum_m` over the contact ticks: two programs that
-/// did the same work agree on it.
+/// or within the ball's radius of it. `distance_sum_m` over the contact ticks, of closest points:
+/// two programs that did the same work agree on it. `missed`: contact ticks without an answer.
 nlohmann::ordered_json run_peer(const PeerOptions& options, const sim::ContactWorkload& work,
                                 const std::function<Peer(const haptics::MeshView&)>& make);
 
