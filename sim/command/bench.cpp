@@ -18,10 +18,12 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr double kMostRadius_m = 0.1; // millimetres given by mistake are above it
+
 struct BenchArguments {
     ContactBenchOptions options;
     std::string mesh, trajectory, unit = "m", wave = "radial", forces;
-    double radius_mm = 2.0, reach_mm = 10.0, breathe_mm = 0.0, seconds = 10.0;
+    double breathe_mm = 0.0, seconds = 10.0;
     std::uint64_t seed = 1;
     bool json = false;
 };
@@ -36,7 +38,7 @@ ContactScene scene_of(const BenchArguments& a) {
         throw std::invalid_argument("bench contact: --breathe: only organ:COUNT and sheet:COUNT "
                                     "breathe");
     if (a.trajectory.empty())
-        return built_in_scene(a.mesh, a.seconds, a.seed, 1e-3 * a.radius_mm, breathing);
+        return built_in_scene(a.mesh, a.seconds, a.seed, a.options.radius_m, breathing);
     auto path_m = at_ticks(read_trajectory(read_bytes(a.trajectory), a.trajectory));
     if (built_in)
         return recorded_scene(a.mesh, a.seed, std::move(path_m), breathing);
@@ -46,7 +48,8 @@ ContactScene scene_of(const BenchArguments& a) {
 
 ordered_json bench_json(const BenchArguments& a, const ContactBench& b) {
     const ContactQuality& q = b.quality;
-    return {{"method", a.options.method},
+    return {{"mesh", a.mesh},
+            {"method", a.options.method},
             {"contact_method", a.options.contact},
             {"triangles", b.triangles},
             {"contact", tick_times_json(b.contact)},
@@ -78,8 +81,9 @@ ordered_json bench_json(const BenchArguments& a, const ContactBench& b) {
 
 std::string bench_table(const BenchArguments& a, const ContactBench& b) {
     const ContactQuality& q = b.quality;
-    std::string out = fmt::format("{}  {} triangles  method {}  contact {}  ball {} mm\n", a.mesh,
-                                  b.triangles, a.options.method, a.options.contact, a.radius_mm);
+    std::string out =
+        fmt::format("{}  {} triangles  method {}  contact {}  ball {} mm\n", a.mesh, b.triangles,
+                    a.options.method, a.options.contact, 1e3 * a.options.radius_m);
     const auto row = [&](const char* name, const TickTimes& t) {
         out += fmt::format("  {:<8} {:>6} ticks  mean {:>8.0f} ns  p50 {:>8.0f}  p99 {:>8.0f}  "
                            "p99.99 {:>8.0f}  max {:>8.0f}\n",
@@ -112,8 +116,10 @@ std::string forces_csv(const ContactBench& b) {
 }
 
 void bench_contact(BenchArguments& a) {
-    a.options.radius_m = 1e-3 * a.radius_mm;
-    a.options.reach_m = 1e-3 * a.reach_mm;
+    if (!(a.options.radius_m >= 0.0 && a.options.radius_m <= kMostRadius_m))
+        throw std::invalid_argument(
+            fmt::format("bench contact: --probe-radius {}: accepted: metres, from 0 to {}",
+                        a.options.radius_m, kMostRadius_m));
     const ContactBench bench = run_contact_bench(scene_of(a), a.options);
     if (!a.forces.empty())
         write_text(a.forces, forces_csv(bench));
@@ -137,9 +143,9 @@ void add_bench(CLI::App& app, int&) {
     c->add_option("--method", o.method,
                   fmt::format("{}", fmt::join(haptics::kCollisionNames, ", ")));
     c->add_option("--contact", o.contact, fmt::format("{}", fmt::join(kContactNames, ", ")));
-    c->add_option("--probe-radius", a->radius_mm, "Of the ball, mm");
+    c->add_option("--probe-radius", o.radius_m, "Of the ball, m");
     c->add_option("--unit", a->unit, "Of a mesh file: mm, cm, m");
-    c->add_option("--reach", a->reach_mm, "Of the query alone, mm: its initial radius");
+    c->add_option("--reach", o.reach_m, "Of the query alone, m: its initial radius");
     c->add_option("--stiffness", o.stiffness_npm, "N/m");
     c->add_option("--static-friction", o.static_friction, "Coulomb coefficient");
     c->add_option("--dynamic-friction", o.dynamic_friction, "Coulomb coefficient");

@@ -14,7 +14,7 @@ namespace {
 
 struct ScalingArguments {
     ScalingOptions options;
-    double radius_mm = 2.0, reach_mm = 10.0, breathe_mm = 0.0;
+    double breathe_mm = 0.0;
     std::string wave = "radial", out;
 };
 
@@ -28,8 +28,6 @@ void say(const ScalingRow& r) {
 
 void scaling(ScalingArguments& a) {
     ScalingOptions& o = a.options;
-    o.radius_m = 1e-3 * a.radius_mm;
-    o.reach_m = 1e-3 * a.reach_mm;
     o.breathing = {1e-3 * a.breathe_mm, wave_of(a.wave)};
     o.peer_dir = peer_dir();
     const ScalingStudy study = run_scaling_study(o, say);
@@ -55,8 +53,8 @@ void add_scaling_study(CLI::App& study, int&) {
     c->add_option("--rounds", o.rounds, "All take turns this often");
     c->add_option("--seconds", o.seconds, "Of the path");
     c->add_option("--seed", o.seed, "Of mesh and path");
-    c->add_option("--probe-radius", a->radius_mm, "Of the ball, mm");
-    c->add_option("--reach", a->reach_mm, "Initial radius of the queries, mm");
+    c->add_option("--probe-radius", o.radius_m, "Of the ball, m");
+    c->add_option("--reach", o.reach_m, "Initial radius of the queries, m");
     c->add_option("--breathe", a->breathe_mm, "Amplitude at 1 Hz, mm");
     c->add_option("--wave", a->wave, "radial, travelling");
     c->add_option("--cold-every", o.cold_every,

@@ -38,7 +38,7 @@ void refused(const std::string& arguments, const std::string& says) {
 
 TEST_CASE("bench contact: the object has every key that others rely on") {
     const auto j = json_of("bench contact organ:1k --method brute-force --contact penalty "
-                           "--probe-radius 2 --seconds 1 --cold --cold-every 100 --json");
+                           "--probe-radius 0.002 --seconds 1 --cold --cold-every 100 --json");
     CHECK(j["method"] == "brute-force");
     CHECK(j["contact_method"] == "penalty");
     CHECK(j["triangles"] == 980);
@@ -68,8 +68,8 @@ TEST_CASE("bench contact: a mesh file under a recorded path: the force is k time
     for (const char* contact : {"none", "penalty", "virtual-proxy"}) {
         CAPTURE(contact);
         const auto j = json_of("bench contact '" + mesh + "' --unit cm --trajectory '" + path +
-                               "' --contact " + contact + " --probe-radius 2 --json --forces '" +
-                               forces + "'");
+                               "' --contact " + contact +
+                               " --probe-radius 0.002 --json --forces '" + forces + "'");
         CHECK(j["triangles"] == 12);
         CHECK(j["ticks"] == 201);
         CHECK(j["contact_ticks"] == 128); // 8 of the 11 mm of the descent, at 0.11 mm per ms
@@ -93,7 +93,8 @@ TEST_CASE("bench contact: bad input ends with 2 and says what would be accepted"
     refused("organ:1k --method magic", "brute-force");
     refused("organ:1k --contact magic", "virtual-proxy");
     refused("organ:1k --wave round", "travelling");
-    refused("organ:1k --probe-radius -1", "radius");
+    refused("organ:1k --probe-radius -1", "--probe-radius -1: accepted: metres");
+    refused("organ:1k --probe-radius 2", "--probe-radius 2: accepted: metres");
     refused("'" + mesh + "'", "--trajectory");
     const std::string path = folder.file("path.csv", "t,x,y,z\n0,1,2,3\n0.1,1,,3\n");
     refused("'" + mesh + "' --trajectory '" + path + "'", "path.csv: line 3: y is \"\"");

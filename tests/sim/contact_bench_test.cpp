@@ -96,6 +96,19 @@ TEST_CASE("contact bench: a god-object holds on a sheet at rest and is lost on o
     CHECK(breathing.quality.wrong_side > breathing.quality.contact_ticks / 2);
 }
 
+TEST_CASE("contact bench: ours does no wrong, at rest and on what breathes") {
+    for (const char* name : {"organ:1k", "sheet:1k"})
+        for (const double amplitude_m : {0.0, 0.002, 0.005})
+            for (const sim::Wave wave : {sim::Wave::radial, sim::Wave::travelling}) {
+                CAPTURE(name);
+                CAPTURE(amplitude_m);
+                const auto b =
+                    run(sim::built_in_scene(name, 2.0, 1, 0.002, {amplitude_m, wave}), "ours");
+                CHECK(b.quality.contact_ticks > 500);
+                CHECK(b.quality.bad == 0);
+            }
+}
+
 TEST_CASE("contact bench: the same run gives the same forces to the bit") {
     const auto scene = sim::built_in_scene("organ:1k", 1.0, 5, 0.002, {0.002, sim::Wave::radial});
     const auto one = run(scene, "virtual-proxy"), two = run(scene, "virtual-proxy");
