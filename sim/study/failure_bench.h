@@ -71,17 +71,19 @@ struct Random {
 };
 
 // The scenes, one group per file. Each adds rows for one method; what has none, for itself.
-void plate(const ContactMethod& method, std::uint64_t seed, Rows& rows);    // F1
-void voronoi(const ContactMethod& method, std::uint64_t seed, Rows& rows);  // F2
-void cracks(const ContactMethod& method, std::uint64_t seed, Rows& rows);   // F3
-void moving(const ContactMethod& method, std::uint64_t seed, Rows& rows);   // F4
-void concave(const ContactMethod& method, std::uint64_t seed, Rows& rows);  // F5
-void wedge(const ContactMethod& method, std::uint64_t seed, Rows& rows);    // F6
-void friction(const ContactMethod& method, std::uint64_t seed, Rows& rows); // F7
-void membrane(const ContactMethod& method, std::uint64_t seed, Rows& rows); // F8
-void projections(std::uint64_t seed, Rows& rows);                           // F5
-void stale_plane(std::uint64_t seed, Rows& rows);                           // F6
-void signum_friction(std::uint64_t seed, Rows& rows);                       // F7
-void inverted_tets(std::uint64_t seed, Rows& rows);                         // F9
+void plate(const ContactMethod& method, std::uint64_t seed, Rows& rows);         // F1
+void voronoi(const ContactMethod& method, std::uint64_t seed, Rows& rows);       // F2
+void cracks(const ContactMethod& method, std::uint64_t seed, Rows& rows);        // F3
+void moving(const ContactMethod& method, std::uint64_t seed, Rows& rows);        // F4
+void concave(const ContactMethod& method, std::uint64_t seed, Rows& rows);       // F5
+void wedge(const ContactMethod& method, std::uint64_t seed, Rows& rows);         // F6
+void friction(const ContactMethod& method, std::uint64_t seed, Rows& rows);      // F7
+void membrane(const ContactMethod& method, std::uint64_t seed, Rows& rows);      // F8
+void projections(std::uint64_t seed, Rows& rows);                                // F5
+void stale_plane(std::uint64_t seed, Rows& rows);                                // F6
+void signum_friction(std::uint64_t seed, Rows& rows);                            // F7
+void inverted_tets(std::uint64_t seed, Rows& rows);                              // F9
+void pinched_sheet(const ContactMethod& method, std::uint64_t seed, Rows& rows); // F18
+void pinched_flap(std::uint64_t seed, Rows& rows);                               // F18
 
 } // namespace sim::failure

@@ -28,6 +28,7 @@ constexpr std::array kGroups{
     Group{"F7", "friction", failure::friction, failure::signum_friction},
     Group{"F8", "a membrane of 0.5 mm is crossed", failure::membrane},
     Group{"F9", "inverted tetrahedra", nullptr, failure::inverted_tets},
+    Group{"F18", "a flap between two instruments", failure::pinched_sheet, failure::pinched_flap},
 };
 
 void check(const FailureOptions& options) {

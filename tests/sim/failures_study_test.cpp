@@ -41,14 +41,14 @@ TEST_CASE("failures: every scene makes some method fail, and holds every method 
     }
     CHECK(failing == scenes);
     for (const sim::ContactMethod& method : sim::kContactMethods)
-        for (const char* scene : {"F1", "F2", "F3", "F4", "F5", "F6", "F7", "F8"})
+        for (const char* scene : {"F1", "F2", "F3", "F4", "F5", "F6", "F7", "F8", "F18"})
             CHECK(std::any_of(rows().begin(), rows().end(), [&](const sim::FailureRow& r) {
                 return r.scene == scene && r.method == method.name;
             }));
 }
 
 TEST_CASE("failures: another seed shows the same") {
-    for (const sim::FailureRow& r : sim::run_failures_study({2, {"F3", "F5", "F8"}})) {
+    for (const sim::FailureRow& r : sim::run_failures_study({2, {"F3"}})) {
         CAPTURE(r.method);
         CAPTURE(r.quantity);
         CAPTURE(r.measured);
