@@ -90,6 +90,21 @@ TEST_CASE("god-object: in an acute corner both planes hold it at the exact point
     CHECK(b.state.contacts == 2);
 }
 
+TEST_CASE("god-object: never gets into a crumpled ball") {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        Bench b = proxy_bench::crumpled_ball(seed);
+        proxy_bench::Hand hand{std::mt19937_64(seed)};
+        int touched = 0;
+        double inside_m = -1.0;
+        for (int i = 0; i < 4000; ++i) {
+            touched += b.lead(step_god_object, hand.next()).touching;
+            inside_m = std::max(inside_m, proxy_bench::inside_m(b, b.state.proxy_m));
+        }
+        CHECK(touched > 1000);
+        CHECK(inside_m < 1e-7);
+    }
+}
+
 TEST_CASE("god-object: a line that meets a crack passes") {
     Bench b;
     b.quad({-0.1, -0.1, 0}, {-1e-6, -0.1, 0}, {-1e-6, 0.1, 0}, {-0.1, 0.1, 0});

@@ -1,9 +1,13 @@
 #include "haptics/contact/coupling.h"
 
+#include "haptics/contact/god_object.h"
+#include "haptics/contact/penalty.h"
+#include "haptics/contact/virtual_proxy.h"
 #include "haptics/device/trocar.h"
 #include "haptics/device/virtual_device.h"
 #include "haptics/safety/limits.h"
 #include "tests/haptics/mass_spring.h"
+#include "tests/haptics/proxy_bench.h"
 
 #include <atomic>
 #include <cstdlib>
@@ -88,4 +92,20 @@ TEST_CASE("no allocation: from device sample to limited force") {
     }
     CHECK(allocations == before);
     CHECK(device.handle_m().x != 0.0);
+}
+
+TEST_CASE("no allocation: the classical contact methods on a ball of many faces") {
+    for (auto* step :
+         {haptics::step_penalty, haptics::step_god_object, haptics::step_virtual_proxy}) {
+        proxy_bench::Bench b = proxy_bench::crumpled_ball(1);
+        b.input.radius_m = 1e-3;
+        b.input.static_friction = b.input.dynamic_friction = 0.3;
+        proxy_bench::Hand hand{std::mt19937_64(1)};
+        const int before = allocations;
+        int touched = 0;
+        for (int i = 0; i < 500; ++i)
+            touched += b.lead(step, hand.next()).touching;
+        CHECK(allocations == before);
+        CHECK(touched > 100);
+    }
 }

@@ -77,6 +77,26 @@ TEST_CASE("virtual proxy: pressed on an edge the ball rests on it, and rolls rou
     }
 }
 
+TEST_CASE("virtual proxy: never gets into a crumpled ball, nor nearer than its radius") {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        Bench b = with_ball(proxy_bench::crumpled_ball(seed));
+        proxy_bench::Hand hand{std::mt19937_64(seed)};
+        int touched = 0;
+        double inside_m = -1.0;
+        double nearest_m = kRadius_m;
+        for (int i = 0; i < 4000; ++i) {
+            touched += b.lead(step_virtual_proxy, hand.next()).touching;
+            inside_m = std::max(inside_m, proxy_bench::inside_m(b, b.state.proxy_m));
+            const auto skin =
+                haptics::closest_within(b.index, b.mesh(), b.state.proxy_m, kRadius_m);
+            nearest_m = std::min(nearest_m, skin.distance_m);
+        }
+        CHECK(touched > 1000);
+        CHECK(inside_m < 0.0);
+        CHECK(nearest_m > kRadius_m * (1.0 - 1e-9));
+    }
+}
+
 TEST_CASE("virtual proxy: a stuck ball does not creep, a sliding one drags mu times the push") {
     Bench b = with_ball(proxy_bench::floor());
     b.input.static_friction = 0.4;
