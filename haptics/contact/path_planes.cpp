@@ -53,12 +53,18 @@ void look_around(const CollisionIndex& index, const MeshView& mesh, const dvec3&
         out.corner[i] = mesh.corners(out.near[i].triangle);
 }
 
-void HoldingPlanes::add(std::uint32_t triangle, const TrianglePoint& nearest, const dvec3& centre_m,
+void HoldingPlanes::add(std::uint32_t triangle, const TriangleCorners& corner,
+                        const TrianglePoint& nearest, const dvec3& centre_m,
                         double radius_m) noexcept {
+    constexpr double kBeside = 1e-5; // of the distance: an edge's plane leans by 1/4 degree there
     const double distance = std::sqrt(nearest.distance2_m2);
     if (!(distance > 0.0) || count == kRoom)
         return;
-    const dvec3 n = (centre_m - nearest.place_m) / distance;
+    dvec3 n = (centre_m - nearest.place_m) / distance;
+    const dvec3 face = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const double height = glm::dot(face, centre_m - nearest.place_m), area = glm::length(face);
+    if (std::abs(height) > (1.0 - kBeside) * distance * area)
+        n = (height < 0.0 ? -1.0 : 1.0) / area * face;
     const Plane made{n, glm::dot(n, nearest.place_m) + radius_m};
     for (int i = 0; i < count; ++i)
         if (plane[i].normal == made.normal && plane[i].offset_m >= made.offset_m)

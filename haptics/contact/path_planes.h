@@ -32,9 +32,11 @@ struct HoldingPlanes {
     std::array<ProxyContact, kRoom> from;
 
     /// The plane that touches the triangle, grown by `radius_m`, at the point nearest to
-    /// `centre_m`. Nothing if there is no direction, no room, or the same plane already.
-    void add(std::uint32_t triangle, const TrianglePoint& nearest, const glm::dvec3& centre_m,
-             double radius_m) noexcept;
+    /// `centre_m`; the triangle's own if the ball is beside its edge by next to nothing, so that
+    /// triangles in one plane are one plane also across their seams. Nothing if there is no
+    /// direction, no room, or the same plane already.
+    void add(std::uint32_t triangle, const TriangleCorners& corner, const TrianglePoint& nearest,
+             const glm::dvec3& centre_m, double radius_m) noexcept;
 };
 
 /// How far off a surface a proxy rests, for as long as it lives; half of it is a touch. A share of

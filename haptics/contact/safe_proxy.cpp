@@ -53,14 +53,14 @@ HoldingPlanes touching(const Neighbourhood& around, const Walk& walk,
         const TrianglePoint at = nearest_on_triangle(around.corner[i], centre_m);
         const double distance = std::sqrt(at.distance2_m2);
         if (distance <= rest_m + walk.hover_m)
-            out.add(around.near[i].triangle, at, centre_m, rest_m);
+            out.add(around.near[i].triangle, around.corner[i], at, centre_m, rest_m);
         if (distance < nearest_m) {
             nearest = i;
             nearest_m = std::max(distance, rest_m + walk.hover_m);
         }
     }
     if (out.count == 0 && nearest >= 0)
-        out.add(around.near[nearest].triangle,
+        out.add(around.near[nearest].triangle, around.corner[nearest],
                 nearest_on_triangle(around.corner[nearest], centre_m), centre_m, rest_m);
     return out;
 }
@@ -125,8 +125,8 @@ Step step(const Neighbourhood& around, const Walk& walk, const dvec3& looked_m,
         }
         const dvec3 there_m = centre_m + met.sweep.time * (to_m - centre_m);
         const int before = planes.count;
-        planes.add(around.near[met.index].triangle, met.sweep.on_triangle, there_m,
-                   walk.in.radius_m + walk.hover_m);
+        planes.add(around.near[met.index].triangle, around.corner[met.index], met.sweep.on_triangle,
+                   there_m, walk.in.radius_m + walk.hover_m);
         if (planes.count == before) { // nothing new to turn aside by: as far as it is free
             centre_m = there_m;
             return Step::shortened;
