@@ -23,7 +23,7 @@ struct Corner {
     std::string name;
     Scene scene{};
     std::vector<dvec3> normal{}; // walls through the origin
-    double sine = 1.0;           // of half the angle between walls: rounding grows by 1 over it
+    double sine = 1.0;           // between walls: an error grows by 1 over it where they meet
     bool blunt = false;
 };
 
@@ -71,7 +71,7 @@ Corner pit(int walls) {
         };
         c.scene.quad({0, 0, 0}, rim(-1.0), rim(0.0), rim(1.0));
     }
-    c.sine = std::cos(tilt);
+    c.sine = std::sin(tilt);
     return c;
 }
 

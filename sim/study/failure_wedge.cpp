@@ -88,10 +88,10 @@ void wedge(const ContactMethod& method, std::uint64_t, Rows& rows) {
             rows.near("F6", method.name, at + "turn in a tick, deg", d.turn * 180.0 / kPi, 160.0,
                       0.01, true);
         rows.at_most("F6", method.name, at + "turn in a tick, deg", d.turn * 180.0 / kPi,
-                     1.02 * std::asin(step_m / near_m) * 180.0 / kPi, penalty);
+                     1.05 * std::asin(step_m / near_m) * 180.0 / kPi, penalty);
         // the device and the proxy, which goes r over the device's distance as fast
         rows.at_most("F6", method.name, at + "change in a tick, N", d.jump_n,
-                     1.02 * 500.0 * step_m * (1.0 + kRadius_m / near_m), penalty || god);
+                     1.05 * 500.0 * step_m * (1.0 + kRadius_m / near_m), penalty || god);
     }
 }
 
