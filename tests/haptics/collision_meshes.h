@@ -1,108 +1,131 @@
 // tests/haptics/collision_meshes.h
-// Meshes for tests of collision: seeded, nice ones and nasty ones.
+// Random meshes of every character for tests of collision methods, about 2 units large.
 #pragma once
 
 #include "haptics/collision/mesh_view.h"
 
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <random>
 #include <vector>
 
-namespace collision_meshes {
-
-struct Mesh {
-    std::vector<glm::dvec3> vertex_m;
-    std::vector<haptics::Corners> triangle;
-    std::vector<glm::dvec3> before_m; // empty: rests
-    haptics::MeshView view() const { return {vertex_m, triangle, before_m}; }
+struct CollisionRandom {
+    std::mt19937_64 engine;
+    double between(double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(engine);
+    }
+    double power(double low, double high) { return std::pow(10.0, between(low, high)); }
+    std::uint32_t below(std::size_t n) { return static_cast<std::uint32_t>(engine() % n); }
+    glm::dvec3 place(double size) {
+        return {between(-size, size), between(-size, size), between(-size, size)};
+    }
 };
 
-inline glm::dvec3 random_place(std::mt19937& random, double size) {
-    std::uniform_real_distribution<double> u(-size, size);
-    const double x = u(random), y = u(random);
-    return {x, y, u(random)};
-}
+struct CollisionMesh {
+    std::vector<glm::dvec3> vertex, before;
+    std::vector<haptics::Corners> triangle;
+    haptics::MeshView view() const { return {vertex, triangle, before}; }
+};
 
-/// Closed, bumpy, about `radius_m` across; 2 n (2 n - 1) triangles.
-inline Mesh ball(int n, double radius_m, std::uint32_t seed, double bumps = 0.1) {
-    Mesh mesh;
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> u(1.0 - bumps, 1.0 + bumps);
-    const int around = 2 * n;
-    mesh.vertex_m.push_back({0.0, 0.0, radius_m * u(random)});
-    for (int i = 1; i < n; ++i)
-        for (int j = 0; j < around; ++j) {
-            const double polar = M_PI * i / n, turn = 2.0 * M_PI * j / around;
-            mesh.vertex_m.push_back(radius_m * u(random) *
-                                    glm::dvec3{std::sin(polar) * std::cos(turn),
-                                               std::sin(polar) * std::sin(turn), std::cos(polar)});
-        }
-    mesh.vertex_m.push_back({0.0, 0.0, -radius_m * u(random)});
-    const auto last = static_cast<std::uint32_t>(mesh.vertex_m.size() - 1);
-    const auto at = [&](int i, int j) {
-        return i == 0   ? 0u
-               : i == n ? last
-                        : static_cast<std::uint32_t>(1 + (i - 1) * around + j % around);
-    };
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < around; ++j) {
-            if (i > 0)
-                mesh.triangle.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
-            if (i + 1 < n)
-                mesh.triangle.push_back({at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)});
-        }
-    return mesh;
-}
-
-/// Two bumpy layers a little apart, open at the rim.
-inline Mesh sheet(int n, double size_m, double apart_m, std::uint32_t seed) {
-    Mesh mesh;
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> u(-0.2, 0.2);
-    for (int layer = 0; layer < 2; ++layer) {
-        const auto first = static_cast<std::uint32_t>(mesh.vertex_m.size());
-        for (int i = 0; i <= n; ++i)
-            for (int j = 0; j <= n; ++j)
-                mesh.vertex_m.push_back(
-                    {size_m * (i - n / 2.0) / n, size_m * (j - n / 2.0) / n,
-                     apart_m * (layer + u(random)) + 0.05 * size_m * std::sin(9.0 * i / n)});
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; j < n; ++j) {
-                const auto a = static_cast<std::uint32_t>(first + i * (n + 1) + j);
-                const auto up = static_cast<std::uint32_t>(a + n + 1);
-                mesh.triangle.push_back({a, up, a + 1});
-                mesh.triangle.push_back({a + 1, up, up + 1});
-            }
+// Triangles of any size anywhere; every third a sliver, every seventh without area.
+inline CollisionMesh soup(CollisionRandom& random, std::uint32_t triangles) {
+    CollisionMesh mesh;
+    for (std::uint32_t t = 0; t < triangles; ++t) {
+        const glm::dvec3 at = random.place(1.0);
+        const double size = random.power(-2.0, -0.3);
+        const glm::dvec3 a = at + random.place(size), b = at + random.place(size);
+        glm::dvec3 c = at + random.place(size);
+        if (t % 3 == 0)
+            c = a + random.between(0, 1) * (b - a) + random.place(random.power(-12.0, -3.0));
+        if (t % 7 == 0)
+            c = t % 2 ? a : a + 0.5 * (b - a);
+        for (const glm::dvec3& p : {a, b, c})
+            mesh.vertex.push_back(p);
+        mesh.triangle.push_back({3 * t, 3 * t + 1, 3 * t + 2});
     }
     return mesh;
 }
 
-/// Anything: triangles of all sizes, slivers, points, twins, corners twice.
-inline Mesh soup(int triangles, double size_m, std::uint32_t seed) {
-    Mesh mesh;
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> u(0.0, 1.0);
-    for (int t = 0; t < triangles; ++t) {
-        const glm::dvec3 a = random_place(random, size_m);
-        const double edge = size_m * std::pow(10.0, -4.0 * u(random));
-        glm::dvec3 b = a + random_place(random, edge), c = a + random_place(random, edge);
-        const int kind = static_cast<int>(8.0 * u(random));
-        if (kind == 0)
-            c = a + u(random) * (b - a) + random_place(random, 1e-7 * edge); // sliver
-        if (kind == 1)
-            c = a + u(random) * (b - a); // no area
-        if (kind == 2)
-            b = c = a;
-        const auto first = static_cast<std::uint32_t>(mesh.vertex_m.size());
-        mesh.vertex_m.insert(mesh.vertex_m.end(), {a, b, c});
-        mesh.triangle.push_back({first, first + 1, first + 2});
-        if (kind == 3)
-            mesh.triangle.push_back({first, first + 2, first + 1}); // its back again
-        if (kind == 4)
-            mesh.triangle.push_back({first, first, first + 1});
+// Closed, crumpled; its poles are many vertices in one place, so there are triangles without area.
+inline CollisionMesh ball(CollisionRandom& random, std::uint32_t n) {
+    CollisionMesh mesh;
+    for (std::uint32_t j = 0; j <= n; ++j)
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const double theta = 3.14159265358979 * j / n, phi = 6.28318530717959 * i / n;
+            const double r = j % n == 0 ? 1.0 : random.between(0.8, 1.0);
+            mesh.vertex.push_back(r * glm::dvec3{std::sin(theta) * std::cos(phi),
+                                                 std::sin(theta) * std::sin(phi), std::cos(theta)});
+            if (j == n)
+                continue;
+            const std::uint32_t a = j * n + i, b = j * n + (i + 1) % n;
+            mesh.triangle.push_back({a, b, a + n});
+            mesh.triangle.push_back({b, b + n, a + n});
+        }
+    return mesh;
+}
+
+// n x n cells over [-1, 1]^2 at a height, in either winding.
+inline void add_sheet(CollisionMesh& mesh, std::uint32_t n, double height_m) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertex.size());
+    for (std::uint32_t j = 0; j <= n; ++j)
+        for (std::uint32_t i = 0; i <= n; ++i) {
+            mesh.vertex.push_back({2.0 * i / n - 1.0, 2.0 * j / n - 1.0, height_m});
+            if (i == n || j == n)
+                continue;
+            const std::uint32_t a = first + j * (n + 1) + i;
+            mesh.triangle.push_back({a, a + 1, a + n + 1});
+            mesh.triangle.push_back({a + 1, a + n + 2, a + n + 1});
+        }
+}
+
+inline CollisionMesh height_field(CollisionRandom& random, std::uint32_t n) {
+    CollisionMesh mesh;
+    add_sheet(mesh, n, 0.0);
+    for (glm::dvec3& v : mesh.vertex)
+        v.z = 0.3 * std::sin(5.0 * v.x) * std::cos(4.0 * v.y) + random.between(-0.02, 0.02);
+    return mesh;
+}
+
+// Two sheets close together, askew: a closed membrane but for its rim.
+inline CollisionMesh thin_sheet(CollisionRandom& random, std::uint32_t n, double thickness_m) {
+    CollisionMesh mesh;
+    add_sheet(mesh, n, 0.0);
+    add_sheet(mesh, n, thickness_m);
+    const double turn = random.between(0.0, 6.28), c = std::cos(turn), s = std::sin(turn);
+    for (glm::dvec3& v : mesh.vertex) {
+        const glm::dvec3 p = v;
+        v = {c * p.x - s * p.z, p.y, s * p.x + c * p.z};
     }
     return mesh;
 }
 
-} // namespace collision_meshes
+inline CollisionMesh any_mesh(CollisionRandom& random) {
+    switch (random.below(5)) {
+    case 0:
+        return soup(random, 1 + random.below(300));
+    case 1:
+        return ball(random, 12);
+    case 2:
+        return height_field(random, 12);
+    case 3:
+        return thin_sheet(random, 9, random.power(-6.0, -1.0));
+    default: { // everything twice: ties and duplicate vertices
+        CollisionMesh mesh = soup(random, 60);
+        const CollisionMesh once = mesh;
+        for (const haptics::Corners& t : once.triangle)
+            mesh.triangle.push_back({t[2], t[0], t[1]});
+        mesh.vertex.insert(mesh.vertex.end(), once.vertex.begin(), once.vertex.end());
+        return mesh;
+    }
+    }
+}
+
+// All vertices go somewhere else within the interval, from where they are: together, by
+// themselves, or both.
+inline void move(CollisionRandom& random, CollisionMesh& mesh) {
+    mesh.before = mesh.vertex;
+    const glm::dvec3 together =
+        random.below(3) ? random.place(random.power(-3.0, 0.0)) : glm::dvec3{0.0};
+    const double apart = random.below(3) ? random.power(-4.0, -0.5) : 0.0;
+    for (glm::dvec3& v : mesh.vertex)
+        v += together + random.place(apart);
+}

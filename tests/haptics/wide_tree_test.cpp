@@ -1,7 +1,7 @@
 #include "haptics/collision/wide_tree.h"
 
 #include "haptics/collision/brute_force.h"
-#include "tests/haptics/collision_meshes.h"
+#include "tests/haptics/ring_meshes.h"
 
 #include <doctest/doctest.h>
 #include <glm/gtc/constants.hpp>
@@ -21,7 +21,7 @@ bool same(const SurfaceHit& a, const SurfaceHit& b) {
 }
 
 // Where a hand might go: steps of all sizes, back and forth, now and then somewhere else.
-std::vector<dvec3> walk(std::mt19937& random, const collision_meshes::Mesh& mesh, double size_m,
+std::vector<dvec3> walk(std::mt19937& random, const ring_meshes::Mesh& mesh, double size_m,
                         int steps) {
     std::uniform_int_distribution<std::size_t> vertex(0, mesh.vertex_m.size() - 1);
     std::uniform_real_distribution<double> u(0.0, 1.0);
@@ -29,18 +29,17 @@ std::vector<dvec3> walk(std::mt19937& random, const collision_meshes::Mesh& mesh
     dvec3 place = mesh.vertex_m[vertex(random)], heading{0.0};
     for (int i = 0; i < steps; ++i) {
         if (u(random) < 0.01)
-            place = mesh.vertex_m[vertex(random)] +
-                    collision_meshes::random_place(random, 0.1 * size_m);
+            place = mesh.vertex_m[vertex(random)] + ring_meshes::random_place(random, 0.1 * size_m);
         if (u(random) < 0.02)
             heading =
-                collision_meshes::random_place(random, size_m * std::pow(10.0, -1 - 3 * u(random)));
-        place += heading + collision_meshes::random_place(random, 0.01 * glm::length(heading));
+                ring_meshes::random_place(random, size_m * std::pow(10.0, -1 - 3 * u(random)));
+        place += heading + ring_meshes::random_place(random, 0.01 * glm::length(heading));
         out.push_back(place);
     }
     return out;
 }
 
-int differences(const collision_meshes::Mesh& mesh, double size_m, std::uint32_t seed, int steps) {
+int differences(const ring_meshes::Mesh& mesh, double size_m, std::uint32_t seed, int steps) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> u(0.0, 1.0);
     const MeshView view = mesh.view();
@@ -63,10 +62,10 @@ int differences(const collision_meshes::Mesh& mesh, double size_m, std::uint32_t
 TEST_CASE("wide tree: with or without a ring the answer is that of brute force, to the bit") {
     for (std::uint32_t seed = 1; seed <= 6; ++seed) {
         CAPTURE(seed);
-        CHECK(differences(collision_meshes::ball(12, 0.06, seed), 0.06, seed, 1500) == 0);
-        CHECK(differences(collision_meshes::sheet(20, 0.1, 1e-3, seed), 0.1, seed, 1000) == 0);
-        CHECK(differences(collision_meshes::soup(600, 0.1, seed), 0.1, seed, 1000) == 0);
-        CHECK(differences(collision_meshes::soup(3, 0.1, seed), 0.1, seed, 300) == 0);
+        CHECK(differences(ring_meshes::ball(12, 0.06, seed), 0.06, seed, 1500) == 0);
+        CHECK(differences(ring_meshes::sheet(20, 0.1, 1e-3, seed), 0.1, seed, 1000) == 0);
+        CHECK(differences(ring_meshes::soup(600, 0.1, seed), 0.1, seed, 1000) == 0);
+        CHECK(differences(ring_meshes::soup(3, 0.1, seed), 0.1, seed, 300) == 0);
     }
 }
 
@@ -75,7 +74,7 @@ TEST_CASE("wide tree: a thousand metres away and in millimetres it answers as we
         for (const double offset : {0.0, 1.0, 1e3}) {
             CAPTURE(unit);
             CAPTURE(offset);
-            collision_meshes::Mesh mesh = collision_meshes::ball(10, 0.06 * unit, 7);
+            ring_meshes::Mesh mesh = ring_meshes::ball(10, 0.06 * unit, 7);
             for (dvec3& v : mesh.vertex_m)
                 v += offset * unit * dvec3{1.0, -0.5, 0.3};
             CHECK(differences(mesh, 0.06 * unit, 3, 800) == 0);
@@ -83,7 +82,7 @@ TEST_CASE("wide tree: a thousand metres away and in millimetres it answers as we
 }
 
 TEST_CASE("wide tree: every instruction set gives the same bits") {
-    const collision_meshes::Mesh mesh = collision_meshes::ball(15, 0.06, 2);
+    const ring_meshes::Mesh mesh = ring_meshes::ball(15, 0.06, 2);
     int sets = 0;
     for (const std::int64_t one : hwy::SupportedAndGeneratedTargets()) {
         hwy::SetSupportedTargetsForTest(one);
@@ -100,7 +99,7 @@ TEST_CASE("wide tree: every instruction set gives the same bits") {
 
 TEST_CASE("wide tree: after a refit the ring is not believed any more") {
     std::mt19937 random(4);
-    collision_meshes::Mesh mesh = collision_meshes::ball(14, 0.06, 9);
+    ring_meshes::Mesh mesh = ring_meshes::ball(14, 0.06, 9);
     const std::vector<dvec3> rest = mesh.vertex_m;
     WideTree tree = make_wide_tree(mesh.view());
     WideRing ring;
@@ -119,7 +118,7 @@ TEST_CASE("wide tree: after a refit the ring is not believed any more") {
 }
 
 TEST_CASE("wide tree: a mesh that wanders off takes its frame along") {
-    collision_meshes::Mesh mesh = collision_meshes::ball(10, 0.06, 11);
+    ring_meshes::Mesh mesh = ring_meshes::ball(10, 0.06, 11);
     WideTree tree = make_wide_tree(mesh.view());
     WideRing ring;
     for (const double far : {0.1, 10.0, 1e4}) {
@@ -135,7 +134,7 @@ TEST_CASE("wide tree: a mesh that wanders off takes its frame along") {
 }
 
 TEST_CASE("wide tree: a vertex that is no number takes its triangles out, the others stay") {
-    collision_meshes::Mesh mesh = collision_meshes::ball(10, 0.06, 13);
+    ring_meshes::Mesh mesh = ring_meshes::ball(10, 0.06, 13);
     WideTree tree = make_wide_tree(mesh.view());
     WideRing ring;
     const dvec3 there = mesh.vertex_m[30];
@@ -155,7 +154,7 @@ TEST_CASE("wide tree: a vertex that is no number takes its triangles out, the ot
 }
 
 TEST_CASE("wide tree: a mesh without triangles answers nothing") {
-    const collision_meshes::Mesh mesh;
+    const ring_meshes::Mesh mesh;
     WideTree tree = make_wide_tree(mesh.view());
     refit(tree, mesh.view());
     WideRing ring;
@@ -165,7 +164,7 @@ TEST_CASE("wide tree: a mesh without triangles answers nothing") {
 
 TEST_CASE("wide tree: among equally near triangles the first is taken, however many there are") {
     // 400 times the same: more than there is room to remember
-    collision_meshes::Mesh mesh;
+    ring_meshes::Mesh mesh;
     mesh.vertex_m = {{0.0, 0.0, 0.0}, {0.01, 0.0, 0.0}, {0.0, 0.01, 0.0}};
     mesh.triangle.assign(1000, {0, 1, 2});
     const WideTree tree = make_wide_tree(mesh.view());
