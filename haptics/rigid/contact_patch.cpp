@@ -1,5 +1,6 @@
 #include "haptics/rigid/contact_patch.h"
 
+#include <algorithm>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -9,7 +10,7 @@ namespace {
 using glm::dvec3;
 
 struct Polygon {
-    std::array<dvec3, 64> corner; // seen from the first corner of all
+    std::array<dvec3, 258> corner; // seen from the first corner of all
     std::size_t count = 0;
 };
 
@@ -17,7 +18,7 @@ struct Polygon {
 Polygon deep_part(std::span<const dvec3> corner_m, double first_depth_m,
                   const dvec3& slope) noexcept {
     Polygon part;
-    const std::size_t n = corner_m.size() < 62 ? corner_m.size() : 62;
+    const std::size_t n = std::min<std::size_t>(corner_m.size(), 256);
     for (std::size_t i = 0; i < n; ++i) {
         const dvec3 from = corner_m[i] - corner_m[0];
         const dvec3 to = corner_m[i + 1 == n ? 0 : i + 1] - corner_m[0];

@@ -25,7 +25,7 @@ struct ContactPatch {
 };
 
 /// The part of a convex polygon that is in contact, exact: its corners in order, the depth at the
-/// first and the gradient of depth over it. Area 0 if there is none. At most 62 corners, the rest
+/// first and the gradient of depth over it. Area 0 if there is none. At most 256 corners, the rest
 /// are left out. Real-time safe.
 ContactPatch part_in_contact(std::span<const glm::dvec3> corner_m, const glm::dvec3& normal,
                              double first_depth_m, const glm::dvec3& slope) noexcept;
