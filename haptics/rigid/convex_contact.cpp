@@ -13,6 +13,7 @@ namespace {
 using glm::dvec3;
 
 constexpr double kSteepest = 0.05; // cosine
+constexpr double kMostDrop = 0.2;  // of the way out, per tick
 constexpr std::size_t kMostCorners = 2 * kMostAround;
 
 using FaceList = Bounded<std::uint32_t, 48>;
@@ -119,6 +120,7 @@ PairContact convex_contact(const ConvexHull& a, const ConvexHull& b, const Rigid
             // past an inner face the way here is not the way out
             memory.normal_a = any_inner(a) || any_inner(b) ? dvec3{0.0} : s.normal;
             memory.overlapped = false;
+            memory.way_out_m = 0.0;
             return {.depth_m = -s.distance_m, .normal = s.normal};
         }
     }
@@ -129,12 +131,14 @@ PairContact convex_contact(const ConvexHull& a, const ConvexHull& b, const Rigid
         return {.depth_m = p.depth_m, .normal = p.normal};
     }
     PairContact contact{.depth_m = p.depth_m, .normal = p.normal};
+    double way_out_m = p.depth_m;
     if (known) {
         contact.normal = turned_towards(memory.normal_a, p.normal);
         contact.depth_m = depth_along(a, b, b_in_a, contact.normal);
-        contact.scale = std::min(1.0, p.depth_m / contact.depth_m);
+        way_out_m = std::max(way_out_m, (1.0 - kMostDrop) * memory.way_out_m);
+        contact.scale = std::min(1.0, way_out_m / contact.depth_m);
     }
-    memory = {.normal_a = contact.normal, .overlapped = true};
+    memory = {.normal_a = contact.normal, .way_out_m = way_out_m, .overlapped = true};
     return contact;
 }
 

@@ -60,7 +60,7 @@ class Cutter {
         Patch patch{seed};
         for (std::size_t i = 0; i < patch.size(); ++i) {
             for (const std::uint32_t next : s_.across[patch[i]]) {
-                if (next == kNoTriangle || seen[next] || !convex_with(patch, next))
+                if (next == kRim || seen[next] || !convex_with(patch, next))
                     continue;
                 seen[next] = true;
                 patch.push_back(next);

@@ -166,7 +166,7 @@ void add_stiffness(Matrix6& stiffness, const RepresentativeContact& contact, dou
 }
 
 bool balance(std::span<CoupledTool> tool, std::span<const ToolContact> contact,
-             double stiffness_npm, double most_step_m, double most_turn_rad) noexcept {
+             double stiffness_npm) noexcept {
     tool = tool.first(std::min<std::size_t>(tool.size(), kMostRigidTools));
     contact = contact.first(std::min<std::size_t>(contact.size(), ToolContactList{}.item.size()));
     std::array<bool, 48> pulls{};
@@ -196,8 +196,8 @@ bool balance(std::span<CoupledTool> tool, std::span<const ToolContact> contact,
                 add_stiffness(contacts, contact[i].contact, stiffness_npm, tool[t].tool.position_m);
         set_felt(tool[t], contacts);
         const double* m = &system.b[6 * t];
-        move(tool[t].tool, limited({m[0], m[1], m[2]}, most_step_m),
-             limited({m[3], m[4], m[5]}, most_turn_rad));
+        move(tool[t].tool, limited({m[0], m[1], m[2]}, tool[t].most_step_m),
+             limited({m[3], m[4], m[5]}, tool[t].most_turn_rad));
         feel(tool[t]);
     }
     return true;

@@ -57,16 +57,17 @@ void add_stiffness(Matrix6& stiffness, const RepresentativeContact& contact, dou
 struct CoupledTool {
     RigidPose device{}, tool{};
     CouplingSpring spring{};
+    double most_step_m = 1e300; // it moves at most so far (linearisation, tunnelling)
+    double most_turn_rad = 1e300;
     Wrench wrench{};
     Matrix6 felt{}; // stiffness at the device: coupling in series with the contacts
 };
 
 /// Moves the tools to the balance of springs and contacts (N/m per contact: stiffness * share), by
-/// one linear solve, repeated without the contacts that would pull. `most_step_m`, `most_turn_rad`:
-/// each tool moves at most so far (linearisation, tunnelling). False: the system could not be
+/// one linear solve, repeated without the contacts that would pull. False: the system could not be
 /// solved (a number is not finite); tools stay and feel nothing. Real-time safe.
 bool balance(std::span<CoupledTool> tool, std::span<const ToolContact> contact,
-             double stiffness_npm, double most_step_m, double most_turn_rad) noexcept;
+             double stiffness_npm) noexcept;
 
 /// Rotation vector (rad) that turns `from` into `to`, the short way.
 glm::dvec3 turn_between(const glm::dmat3& from, const glm::dmat3& to) noexcept;

@@ -62,7 +62,7 @@ void set_neighbours(RigidSurface& s) {
         for (std::size_t e = 0; e < 3; ++e) {
             const auto [from, to] = edge(t, e);
             const auto other = owner.find({to, from});
-            s.across[t][e] = other == owner.end() ? kNoTriangle : other->second;
+            s.across[t][e] = other == owner.end() ? kRim : other->second;
             s.closed = s.closed && other != owner.end();
         }
 }

@@ -18,12 +18,12 @@ struct RigidSurface {
     std::string name;
     std::vector<glm::dvec3> vertex_m;
     std::vector<std::array<std::uint32_t, 3>> triangle;
-    std::vector<std::array<std::uint32_t, 3>> across; // beyond edge i, i + 1; kNoTriangle: rim
+    std::vector<std::array<std::uint32_t, 3>> across; // beyond edge i, i + 1; kRim: none
     std::vector<glm::dvec3> normal;                   // unit
     bool closed = true;
     double extent_m = 0.0; // longest side of the bounding box
 };
-inline constexpr std::uint32_t kNoTriangle = 0xffffffff;
+inline constexpr std::uint32_t kRim = 0xffffffff;
 
 /// Throws std::invalid_argument naming the surface and the triangle or vertex: an index out of
 /// range, a vertex that is not finite, a triangle without area, an edge used twice in the same

@@ -8,6 +8,7 @@
 #include "haptics/safety/limits.h"
 #include "tests/haptics/mass_spring.h"
 #include "tests/haptics/proxy_bench.h"
+#include "tests/haptics/rigid_scenes.h"
 
 #include <atomic>
 #include <cstdlib>
@@ -108,4 +109,20 @@ TEST_CASE("no allocation: the classical contact methods on a ball of many faces"
         CHECK(allocations == before);
         CHECK(touched > 100);
     }
+}
+
+TEST_CASE("no allocation: rigid tools pressed into rigid scenery and each other") {
+    RigidRig rig({body(u_surface()), body(torus_surface(0.02, 0.006, 16, 10))},
+                 {body(l_surface()), body("box", {box(glm::dvec3{5e-3})})});
+    const int before = allocations;
+    std::uint32_t contacts = 0;
+    for (int tick = 0; tick < 300; ++tick) {
+        const std::array<haptics::RigidPose, 2> device{
+            haptics::RigidPose{turn({1, 2, 3}, 0.01 * tick), {0, 0, 0.02 - 1e-4 * tick}},
+            haptics::RigidPose{turn({3, 2, 1}, 0.02 * tick), {0, 1e-4 * tick, 0.01}}};
+        haptics::step_rigid(rig.model, device, rig.state, rig.scratch, rig.tick);
+        contacts += rig.tick.contacts.count;
+    }
+    CHECK(allocations == before);
+    CHECK(contacts > 300);
 }
