@@ -1,7 +1,6 @@
 #include "haptics/rigid/contact_clusters.h"
 
 #include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -10,7 +9,7 @@ namespace {
 
 using glm::dvec3;
 
-// Integrals over the part of a patch that is in contact.
+// Integrals over a patch; places are seen from where the sum says.
 struct Moments {
     double weight = 0.0, square = 0.0; // of d, d^2
     dvec3 place{0.0};                  // of x d
@@ -19,32 +18,14 @@ struct Moments {
     glm::dmat3 spread{0.0};
 };
 
-// Positions are relative to the patch's middle. Depth is taken as spread evenly over
-// depth +- h: exact where the patch is wholly in contact, and for a rectangle that goes in along
-// one of its axes.
+// From the middle of the patch; exact, as depth is linear.
 Moments moments_of(const ContactPatch& p) noexcept {
-    Moments m;
-    const dvec3 lean = p.spread_m4 * p.slope; // int x (d - depth) dA
-    const double variance = glm::dot(p.slope, lean);
-    const double h = p.area_m2 > 0.0 ? std::sqrt(3.0 * std::max(0.0, variance) / p.area_m2) : 0.0;
-    const double most = p.depth_m + h;
-    if (!(most > 0.0) || !(p.area_m2 > 0.0))
-        return m;
-    if (p.whole || p.depth_m >= h) {
-        m.weight = p.area_m2 * p.depth_m;
-        m.square = p.area_m2 * p.depth_m * p.depth_m + variance;
-        m.place = lean;
-        m.area = p.area_m2;
-        m.spread = p.spread_m4;
-        return m;
-    }
-    m.weight = p.area_m2 * most * most / (4.0 * h);
-    m.square = p.area_m2 * most * most * most / (6.0 * h);
-    m.place = lean / variance * (m.square - p.depth_m * m.weight);
-    m.area = p.area_m2 * most / (2.0 * h);
-    m.middle = lean / variance * (m.area * 0.5 * (h - p.depth_m));
-    m.spread = p.spread_m4 * (most / (2.0 * h));
-    return m;
+    const dvec3 lean = p.spread_m4 * p.slope; // int x d dA
+    return {.weight = p.area_m2 * p.depth_m,
+            .square = p.area_m2 * p.depth_m * p.depth_m + glm::dot(p.slope, lean),
+            .place = lean,
+            .area = p.area_m2,
+            .spread = p.spread_m4};
 }
 
 struct Cluster {
@@ -83,10 +64,8 @@ void join(Cluster& c, const ContactPatch& p, const Moments& m) noexcept {
     c.sum.square += m.square;
     c.sum.place += m.place + m.weight * shift_m;
     c.sum.area += m.area;
-    c.sum.middle += m.middle + m.area * shift_m;
-    c.sum.spread += m.spread + glm::outerProduct(m.middle, shift_m) +
-                    glm::outerProduct(shift_m, m.middle) +
-                    m.area * glm::outerProduct(shift_m, shift_m);
+    c.sum.middle += m.area * shift_m;
+    c.sum.spread += m.spread + m.area * glm::outerProduct(shift_m, shift_m);
 }
 
 RepresentativeContact represent(const Cluster& c) noexcept {

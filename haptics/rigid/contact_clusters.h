@@ -43,9 +43,9 @@ struct ClusterParams {
     double least_cos = 0.97; // ... and whose normal is as like
 };
 
-/// Patches without contact are passed over. Beyond 16 clusters a patch joins the one with the most
-/// alike normal. The order of the patches decides who is first in a cluster: the same list gives
-/// the same result to the bit. Real-time safe.
+/// Patches that are not deep are passed over. Beyond 16 clusters a patch joins the one with the
+/// most alike normal. The order of the patches decides who is first in a cluster: the same list
+/// gives the same result to the bit. Real-time safe.
 void cluster_contacts(std::span<const ContactPatch> patch, const ClusterParams& params,
                       ContactList& out) noexcept;
 

@@ -36,7 +36,7 @@ Polygon deep_part(std::span<const dvec3> corner_m, double first_depth_m,
 
 ContactPatch part_in_contact(std::span<const dvec3> corner_m, const dvec3& normal,
                              double first_depth_m, const dvec3& slope) noexcept {
-    ContactPatch patch{.normal = normal, .slope = slope, .whole = true};
+    ContactPatch patch{.normal = normal, .slope = slope};
     if (corner_m.size() < 3)
         return patch;
     const Polygon part = deep_part(corner_m, first_depth_m, slope);

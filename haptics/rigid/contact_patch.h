@@ -21,7 +21,6 @@ struct ContactPatch {
     double area_m2 = 0.0;
     glm::dvec3 slope{0.0};     // gradient of depth in the patch, m/m
     glm::dmat3 spread_m4{0.0}; // integral of (x - middle)(x - middle)^T over the area
-    bool whole = false;        // all of it is in contact: integrals are exact
 };
 
 /// The part of a convex polygon that is in contact, exact: its corners in order, the depth at the

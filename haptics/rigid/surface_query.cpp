@@ -1,5 +1,7 @@
 #include "haptics/rigid/surface_query.h"
 
+#include "haptics/rigid/triangle_nearest.h"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -67,29 +69,6 @@ void set_neighbours(RigidSurface& s) {
         }
 }
 
-dvec3 nearest_on(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& p) {
-    const dvec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-    const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
-    if (d1 <= 0 && d2 <= 0)
-        return a;
-    const double d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
-    if (d3 >= 0 && d4 <= d3)
-        return b;
-    const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0)
-        return a + ab * (d1 / (d1 - d3));
-    const double d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
-    if (d6 >= 0 && d5 <= d6)
-        return c;
-    const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0)
-        return a + ac * (d2 / (d2 - d6));
-    const double va = d3 * d6 - d5 * d4;
-    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-    return a + (ab * vb + ac * vc) / (va + vb + vc);
-}
-
 } // namespace
 
 RigidSurface make_surface(std::string_view name, std::span<const dvec3> vertex_m,
@@ -123,7 +102,7 @@ NearestPoint nearest_point(const RigidSurface& s, const dvec3& place_m) {
     NearestPoint best{.distance_m = std::numeric_limits<double>::infinity()};
     for (std::uint32_t t = 0; t < s.triangle.size(); ++t) {
         const auto [a, b, c] = s.triangle[t];
-        const dvec3 q = nearest_on(s.vertex_m[a], s.vertex_m[b], s.vertex_m[c], place_m);
+        const dvec3 q = nearest_on_triangle(s.vertex_m[a], s.vertex_m[b], s.vertex_m[c], place_m);
         const double distance_m = glm::length(q - place_m);
         if (distance_m < best.distance_m)
             best = {q, distance_m, t};

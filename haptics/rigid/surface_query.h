@@ -36,7 +36,7 @@ RigidSurface make_surface(std::string_view name, std::span<const glm::dvec3> ver
 /// van Oosterom and Strackee 1983). Linear in the triangles.
 double winding_number(const RigidSurface& surface, const glm::dvec3& place_m);
 
-/// Nearest point of the surface (Ericson 2005, by the regions of a triangle). Linear.
+/// Nearest point of the surface. Linear in the triangles.
 struct NearestPoint {
     glm::dvec3 place_m{0.0};
     double distance_m = 0.0;

@@ -5,6 +5,7 @@
 #include "haptics/contact/virtual_proxy.h"
 #include "haptics/device/trocar.h"
 #include "haptics/device/virtual_device.h"
+#include "haptics/rigid/voxel_contacts.h"
 #include "haptics/safety/limits.h"
 #include "tests/haptics/mass_spring.h"
 #include "tests/haptics/proxy_bench.h"
@@ -125,4 +126,16 @@ TEST_CASE("no allocation: rigid tools pressed into rigid scenery and each other"
     }
     CHECK(allocations == before);
     CHECK(contacts > 300);
+}
+
+TEST_CASE("no allocation: a shell of points in a voxel map") {
+    const haptics::VoxelMap map = haptics::make_voxel_map(l_surface(), 2e-3);
+    const haptics::PointShell shell = haptics::make_point_shell(cube_surface(5e-3), 2e-3);
+    auto scratch = haptics::reserve_for(shell);
+    haptics::ContactList contacts;
+    const int before = allocations;
+    haptics::voxel_contacts(map, {}, shell, {glm::dmat3(1.0), {0.02, 0, 0.014}}, {}, scratch,
+                            contacts);
+    CHECK(allocations == before);
+    CHECK(contacts.count > 0);
 }
