@@ -84,8 +84,9 @@ std::vector<Polygon> joined(std::span<const dvec3> p, std::span<const GridTriang
     }
     std::vector<std::uint32_t> order(triangle.size()), region(triangle.size(), kNone);
     std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return glm::length(area[a]) > glm::length(area[b]);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const double large = glm::length(area[a]), small = glm::length(area[b]);
+        return large != small ? large > small : a < b;
     });
     std::vector<Polygon> polygon;
     for (const std::uint32_t seed : order) {
