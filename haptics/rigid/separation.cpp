@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 namespace haptics {
 namespace {
@@ -11,8 +12,9 @@ namespace {
 using glm::dvec3;
 
 constexpr int kMostSteps = 100;
-constexpr double kExact = 1e-10;    // of the squared distance
-constexpr double kTouching = 1e-11; // of the size of the pieces
+constexpr double kExact = 1e-10;      // of the squared distance
+constexpr double kFlatHeight = 1e-10; // of the size
+constexpr double kTouching = 1e-11;   // of the size of the pieces
 
 struct Corner {
     dvec3 way_m, on_a_m; // a - b, and its part on a
@@ -64,11 +66,14 @@ Subset on_triangle(const Corner& a, const Corner& b, const Corner& c) noexcept {
     return nearer(nearer(on_edge(a, b), on_edge(b, c)), on_edge(c, a));
 }
 
-// Whether the origin lies beyond the plane of a, b, c, seen from d. A flat tetrahedron has it
-// beyond every side.
+// Whether the origin lies beyond the plane of a, b, c, seen from d. A tetrahedron so flat that
+// rounding decides has it beyond every side.
 bool beyond(const Corner& a, const Corner& b, const Corner& c, const Corner& d) noexcept {
     const dvec3 n = glm::cross(b.way_m - a.way_m, c.way_m - a.way_m);
-    return !(glm::dot(n, a.way_m) * glm::dot(n, a.way_m - d.way_m) > 0.0);
+    const double height = glm::dot(n, a.way_m - d.way_m); // times the length of n
+    const double size_m = std::max(glm::length(a.way_m), glm::length(d.way_m));
+    return !(glm::dot(n, a.way_m) * height > 0.0) ||
+           !(std::abs(height) > kFlatHeight * glm::length(n) * size_m);
 }
 
 // False if the origin is inside.
@@ -118,6 +123,7 @@ Separation separation(const ConvexHull& a, const ConvexHull& b, const RigidPose&
     simplex.weight[0] = 1.0;
     simplex.count = 1;
     Separation result;
+    double last_square = std::numeric_limits<double>::infinity();
     for (; result.steps < kMostSteps; ++result.steps) {
         const dvec3 v = nearest_of(simplex);
         const double square = glm::dot(v, v);
@@ -133,16 +139,17 @@ Separation separation(const ConvexHull& a, const ConvexHull& b, const RigidPose&
             result.distance_m = bound / length_m;
             break;
         }
-        if (square - bound <= kExact * square || has(simplex, next.way_m)) {
-            result.apart = true;
+        // near enough, or as near as rounding lets it come: apart if that plane is between them
+        if (square - bound <= kExact * square || has(simplex, next.way_m) ||
+            square >= last_square || result.steps + 1 == kMostSteps) {
+            result.apart = bound > 0.0;
             break;
         }
+        last_square = square;
         simplex.corner[simplex.count++] = next;
         if (!reduce(simplex))
             return result;
     }
-    // out of steps: rounding; what is there separates if its bound does, which the caller's
-    // penetration walk finds out
     for (int i = 0; i < simplex.count; ++i)
         result.on_a_m += simplex.weight[i] * simplex.corner[i].on_a_m;
     result.on_b_m = result.on_a_m + result.normal * result.distance_m;
