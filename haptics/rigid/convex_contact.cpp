@@ -12,7 +12,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double kSteepest = 0.05; // cosine
+constexpr double kSteepest = 1e-3; // cosine
 constexpr double kMostDrop = 0.2;  // of the way out, per tick
 constexpr std::size_t kMostCorners = 2 * kMostAround;
 

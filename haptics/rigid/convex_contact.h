@@ -44,7 +44,7 @@ struct PairContact {
 PairContact convex_contact(const ConvexHull& a, const ConvexHull& b, const RigidPose& b_in_a,
                            double margin_m, PairMemory& memory) noexcept;
 
-/// Adds the patches of an overlapping pair, in the world. Surfaces steeper than 87 degrees to the
+/// Adds the patches of an overlapping pair, in the world. Surfaces steeper than 89.9 degrees to the
 /// normal are left out, and all but the 48 faces of each piece nearest to its extreme vertex.
 void overlap_patches(const ConvexHull& a, const ConvexHull& b, const RigidPose& a_in_world,
                      const RigidPose& b_in_a, const PairContact& contact,

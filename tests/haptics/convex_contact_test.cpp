@@ -106,6 +106,25 @@ TEST_CASE("convex contact: swapping the pieces swaps the sign and nothing else")
     }
 }
 
+TEST_CASE("convex contact: whatever overlaps has an area, and is nowhere deeper than the pair") {
+    RandomPieces random(31);
+    int overlaps = 0;
+    while (overlaps < 1000) {
+        auto p = random.points(), q = random.points();
+        if (p.size() < 6 || q.size() < 6)
+            continue;
+        const RigidPose pose{overlaps % 5 ? random.rotation() : glm::dmat3(1.0),
+                             0.012 * random.in_ball()};
+        const Felt felt = feel(haptics::convex_hull(p, "a"), haptics::convex_hull(q, "b"), pose);
+        if (felt.pair.depth_m <= 0.0)
+            continue;
+        ++overlaps;
+        CHECK(felt.contacts.count > 0);
+        for (const haptics::RepresentativeContact& c : felt.contacts)
+            CHECK(c.depth_m <= felt.pair.depth_m * (1.0 + 1e-9));
+    }
+}
+
 // F17 in one pair: nothing of it depends on how deep the rod already is.
 TEST_CASE("convex contact: a rod pushed through a plate is pushed back the way it came") {
     const ConvexHull plate = box({0.05, 0.05, 1e-3}), rod = box({1e-3, 1e-3, 1e-2});
