@@ -46,6 +46,6 @@ template <class T, std::uint32_t N> struct Bounded {
     T* end() noexcept { return item.data() + count; }
 };
 
-using PatchList = Bounded<ContactPatch, 256>;
+using PatchList = Bounded<ContactPatch, 512>;
 
 } // namespace haptics

