@@ -125,7 +125,7 @@ TEST_CASE("convex contact: whatever overlaps has an area, and is nowhere deeper 
     }
 }
 
-// F17 in one pair: nothing of it depends on how deep the rod already is.
+// However deep it already is, and though the way on is shorter than the way back.
 TEST_CASE("convex contact: a rod pushed through a plate is pushed back the way it came") {
     const ConvexHull plate = box({0.05, 0.05, 1e-3}), rod = box({1e-3, 1e-3, 1e-2});
     PairMemory memory;
