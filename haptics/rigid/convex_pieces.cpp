@@ -99,26 +99,53 @@ class Cutter {
         return glm::dot(place_m - q.place_m, s_.normal[q.triangle]) < -0.1 * q.distance_m;
     }
 
-    bool stays_inside(const ConvexHull& hull) const {
+    // Whether a face of the hull is nothing but triangles of the patch.
+    bool own(const ConvexHull& hull, std::size_t face, std::span<const std::uint32_t> patch) const {
+        const auto corner = hull.corners(face);
+        const auto twice_area = [](const dvec3& a, const dvec3& b, const dvec3& c) {
+            return glm::length(glm::cross(b - a, c - a));
+        };
+        double wanted = 0.0, covered = 0.0;
+        for (std::size_t i = 2; i < corner.size(); ++i)
+            wanted += twice_area(hull.vertex_m[corner[0]], hull.vertex_m[corner[i - 1]],
+                                 hull.vertex_m[corner[i]]);
+        for (const std::uint32_t t : patch) {
+            const auto [a, b, c] = s_.triangle[t];
+            const auto level = [&](std::uint32_t v) {
+                return glm::dot(hull.normal[face], s_.vertex_m[v]) >= hull.offset_m[face] - flat_m_;
+            };
+            if (level(a) && level(b) && level(c) &&
+                glm::dot(hull.normal[face], s_.normal[t]) > 0.99)
+                covered += twice_area(s_.vertex_m[a], s_.vertex_m[b], s_.vertex_m[c]);
+        }
+        return covered > (1.0 - kNudge) * wanted;
+    }
+
+    bool stays_inside(const ConvexHull& hull, std::span<const std::uint32_t> patch) const {
+        for (std::size_t f = 0; f < hull.normal.size(); ++f)
+            if (!own(hull, f, patch) && !face_inside(hull, f))
+                return false;
+        return true;
+    }
+
+    bool face_inside(const ConvexHull& hull, std::size_t face) const {
         const auto inside = [&](const dvec3& on_hull) {
             return in_solid(on_hull + kNudge * (hull.centre_m - on_hull));
         };
-        for (std::size_t f = 0; f < hull.normal.size(); ++f) {
-            const auto corner = hull.corners(f);
-            dvec3 middle{0.0};
-            for (const std::uint32_t v : corner)
-                middle += hull.vertex_m[v] / static_cast<double>(corner.size());
-            if (!inside(middle))
-                return false;
-            for (std::size_t i = 0; i < corner.size(); ++i) {
-                const dvec3 a = hull.vertex_m[corner[i]];
-                const dvec3 b = hull.vertex_m[corner[(i + 1) % corner.size()]];
-                for (const double share : {0.25, 0.5, 0.75})
-                    if (!inside(a + share * (b - a)))
-                        return false;
-                if (!inside(0.5 * (middle + a)) || !inside((middle + a + b) / 3.0))
+        const auto corner = hull.corners(face);
+        dvec3 middle{0.0};
+        for (const std::uint32_t v : corner)
+            middle += hull.vertex_m[v] / static_cast<double>(corner.size());
+        if (!inside(middle))
+            return false;
+        for (std::size_t i = 0; i < corner.size(); ++i) {
+            const dvec3 a = hull.vertex_m[corner[i]];
+            const dvec3 b = hull.vertex_m[corner[(i + 1) % corner.size()]];
+            for (const double share : {0.25, 0.5, 0.75})
+                if (!inside(a + share * (b - a)))
                     return false;
-            }
+            if (!inside(0.5 * (middle + a)) || !inside((middle + a + b) / 3.0))
+                return false;
         }
         return true;
     }
@@ -126,7 +153,7 @@ class Cutter {
     std::optional<ConvexHull> fits(std::span<const std::uint32_t> patch, double thickness_m,
                                    const std::string& name) const {
         ConvexHull hull = convex_hull(points(patch, thickness_m), name);
-        return stays_inside(hull) ? std::optional(std::move(hull)) : std::nullopt;
+        return stays_inside(hull, patch) ? std::optional(std::move(hull)) : std::nullopt;
     }
 
     // The longest start of the patch whose hull stays in the solid, by halving.

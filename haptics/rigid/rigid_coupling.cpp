@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <tuple>
 
 namespace haptics {
 namespace {
@@ -168,8 +169,8 @@ void add_stiffness(Matrix6& stiffness, const RepresentativeContact& contact, dou
 bool balance(std::span<CoupledTool> tool, std::span<const ToolContact> contact,
              double stiffness_npm) noexcept {
     tool = tool.first(std::min<std::size_t>(tool.size(), kMostRigidTools));
-    contact = contact.first(std::min<std::size_t>(contact.size(), ToolContactList{}.item.size()));
-    std::array<bool, 48> pulls{};
+    std::array<bool, std::tuple_size_v<decltype(ToolContactList::item)>> pulls{};
+    contact = contact.first(std::min(contact.size(), pulls.size()));
     SpdSystem system;
     bool again = true;
     for (int round = 0; again && round < kMostRounds; ++round) {

@@ -27,7 +27,7 @@ struct ToolContact {
     RepresentativeContact contact;
     std::uint32_t first = kNoTool, second = kNoTool;
 };
-using ToolContactList = Bounded<ToolContact, 48>;
+using ToolContactList = Bounded<ToolContact, 144>; // 9 pairs of bodies, 16 each
 
 struct CouplingSpring {
     double stiffness_npm = 0.0;
