@@ -15,7 +15,7 @@ constexpr std::size_t kMostTied = 2 * kMostAround;
 constexpr double kTiedShare = 8.0 * kFlatShare; // joined faces are flat to half of this
 constexpr int kMostSteps = 200;                 // never reached: each step lowers the depth
 constexpr std::size_t kFaceStarts = 32;         // per piece
-constexpr std::size_t kWalks = 4;
+constexpr std::size_t kWalks = 8;
 constexpr std::size_t kMostPairs = 64; // of tied vertices looked at one by one
 
 struct Rays {

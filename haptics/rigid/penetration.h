@@ -36,7 +36,7 @@ Penetration walk_penetration(const ConvexHull& a, const ConvexHull& b, const Rig
                              const glm::dvec3& start) noexcept;
 
 /// The best of several walks: from the line between the centres and from the best normals among up
-/// to 32 faces of each piece. Real-time safe; some ten times one walk.
+/// to 32 faces of each piece, nine in all. Real-time safe; some fifteen times one walk.
 Penetration penetration(const ConvexHull& a, const ConvexHull& b, const RigidPose& b_in_a) noexcept;
 
 } // namespace haptics
