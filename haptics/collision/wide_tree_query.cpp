@@ -175,7 +175,7 @@ SurfaceHit decide(const Seen& seen, const MeshView& mesh, const glm::dvec3& plac
             nearest_leaf = seen.leaf[i];
         }
     }
-    best.distance_m = std::sqrt(best2);
+    best.distance_m = best.hit() ? std::sqrt(best2) : 0.0;
     return best;
 }
 

@@ -74,19 +74,19 @@ void HoldingPlanes::add(std::uint32_t triangle, const TriangleCorners& corner,
 }
 
 double hover_of(const MeshView& mesh, const ProxyInput& in) noexcept {
-    double size_m = in.radius_m, coordinate_m = 0.0;
+    double edge_m = 0.0, coordinate_m = in.radius_m;
     const auto first = static_cast<std::uint32_t>(std::min<std::size_t>(64, mesh.triangle.size()));
     for (std::uint32_t t = 0; t < first; ++t) {
         const TriangleCorners c = mesh.corners(t);
         for (int k = 0; k < 3; ++k) {
-            const double edge_m = glm::length(c[(k + 1) % 3] - c[k]);
-            size_m = std::max(size_m, std::isfinite(edge_m) ? edge_m : 0.0);
+            const double length_m = glm::length(c[(k + 1) % 3] - c[k]);
+            edge_m = std::max(edge_m, std::isfinite(length_m) ? length_m : 0.0);
         }
     }
     for (int axis = 0; axis < 3; ++axis)
         coordinate_m = std::max(coordinate_m, std::abs(in.device_m[axis]));
-    return 4.0 * kSweepGap * size_m +
-           1024.0 * std::numeric_limits<double>::epsilon() * (coordinate_m + size_m);
+    return 4.0 * kSweepGap * (in.radius_m > 0.0 ? in.radius_m : 0.025 * edge_m) +
+           1024.0 * std::numeric_limits<double>::epsilon() * coordinate_m;
 }
 
 } // namespace haptics

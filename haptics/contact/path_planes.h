@@ -40,8 +40,8 @@ struct HoldingPlanes {
 };
 
 /// How far off a surface a proxy rests, for as long as it lives; half of it is a touch. A share of
-/// the ball and of the mesh's first edges, and the rounding of coordinates: far more than what a
-/// sweep takes for contact, far less than anybody feels.
+/// the ball (for a point: of the mesh's first edges), and the rounding of coordinates: far more than
+/// what a sweep takes for contact, far less than anybody feels.
 double hover_of(const MeshView& mesh, const ProxyInput& in) noexcept;
 
 } // namespace haptics

@@ -149,7 +149,16 @@ void tell_contacts(const HoldingPlanes& planes, const ProxyInput& in, double hov
         state.witness = state.contact[0].triangle;
 }
 
+bool holds_back(const HoldingPlanes& planes, const dvec3& device_m) noexcept {
+    for (int i = 0; i < planes.count; ++i)
+        if (glm::dot(planes.plane[i].normal, device_m) < planes.plane[i].offset_m)
+            return true;
+    return false;
+}
+
 // To where the device pulls, as far as a tick allows.
+// `most_m`: no farther in this tick, unless the straight way to the device is free: off a surface
+// there is no force left.
 void approach(const CollisionIndex& index, const MeshView& mesh, const ProxyInput& in,
               double most_m, ProxyState& state) noexcept {
     const dvec3 start_m = state.proxy_m;
@@ -167,7 +176,7 @@ void approach(const CollisionIndex& index, const MeshView& mesh, const ProxyInpu
     Neighbourhood around;
     HoldingPlanes planes;
     dvec3 looked_m = start_m;
-    bool sliding = false;
+    bool sliding = false, looked_far = false;
     double known_m = -1.0; // how far from `looked_m` the centre may be
     for (int i = 0; i < kMostSteps && most_m > 0.0; ++i) {
         walk.longest_m = std::min(walk.longest_m, most_m);
@@ -181,6 +190,18 @@ void approach(const CollisionIndex& index, const MeshView& mesh, const ProxyInpu
         Walk now = walk;
         now.longest_m = std::min(walk.longest_m, known_m - glm::length(state.proxy_m - looked_m));
         planes = touching(around, now, state.proxy_m);
+        if (!holds_back(planes, in.device_m) && !looked_far && walk.longest_m < pull_m) {
+            looked_far = true;
+            looked_m = state.proxy_m;
+            const double way_m = glm::length(in.device_m - looked_m);
+            look_around(index, mesh, looked_m, least_m + way_m, least_m, state.ring, around);
+            known_m = around.reach_m - least_m;
+            if (way_m <= known_m &&
+                first_touch(around, walk, planes, looked_m, looked_m, in.device_m).index < 0) {
+                state.proxy_m = in.device_m;
+                break;
+            }
+        }
         const dvec3 from_m = state.proxy_m;
         const Step done = step(around, now, looked_m, planes, state.proxy_m, sliding);
         const double way_m = glm::length(state.proxy_m - from_m);

@@ -89,7 +89,8 @@ TEST_CASE("virtual proxy: never gets into a crumpled ball, nor nearer than its r
             inside_m = std::max(inside_m, proxy_bench::inside_m(b, b.state.proxy_m));
             const auto skin =
                 haptics::closest_within(b.index, b.mesh(), b.state.proxy_m, kRadius_m);
-            nearest_m = std::min(nearest_m, skin.distance_m);
+            if (skin.hit())
+                nearest_m = std::min(nearest_m, skin.distance_m);
         }
         CHECK(touched > 1000);
         CHECK(inside_m < 0.0);
