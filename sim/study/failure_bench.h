@@ -85,5 +85,7 @@ void signum_friction(std::uint64_t seed, Rows& rows);                           
 void inverted_tets(std::uint64_t seed, Rows& rows);                              // F9
 void pinched_sheet(const ContactMethod& method, std::uint64_t seed, Rows& rows); // F18
 void pinched_flap(std::uint64_t seed, Rows& rows);                               // F18
+void rigid_clusters(std::uint64_t seed, Rows& rows);                             // F16
+void rigid_depths(std::uint64_t seed, Rows& rows);                               // F17
 
 } // namespace sim::failure

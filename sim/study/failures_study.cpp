@@ -28,6 +28,8 @@ constexpr std::array kGroups{
     Group{"F7", "friction", failure::friction, failure::signum_friction},
     Group{"F8", "a membrane of 0.5 mm is crossed", failure::membrane},
     Group{"F9", "inverted tetrahedra", nullptr, failure::inverted_tets},
+    Group{"F16", "a flat face by many points", nullptr, failure::rigid_clusters},
+    Group{"F17", "deep in thin and concave things", nullptr, failure::rigid_depths},
     Group{"F18", "a flap between two instruments", failure::pinched_sheet, failure::pinched_flap},
 };
 
