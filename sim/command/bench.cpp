@@ -76,6 +76,7 @@ ordered_json bench_json(const BenchArguments& a, const ContactBench& b) {
             {"breathe_m", 1e-3 * a.breathe_mm},
             {"wave", a.wave},
             {"seed", a.seed},
+            {"preempted", b.preempted},
             {"clock_overhead_ns", b.clock_overhead_ns}};
 }
 
@@ -93,9 +94,10 @@ std::string bench_table(const BenchArguments& a, const ContactBench& b) {
     row("free", b.free);
     if (a.options.cold)
         row("cold", b.cold);
-    out += fmt::format("  every time includes {:.0f} ns of the clock\n  build {:.2f} ms, refit "
+    out += fmt::format("  every time includes {:.0f} ns of the clock; {} ticks left out, as others "
+                       "got the processor\n  build {:.2f} ms, refit "
                        "{:.3f} ms\n",
-                       b.clock_overhead_ns, b.build_ms, b.refit_ms);
+                       b.clock_overhead_ns, b.preempted, b.build_ms, b.refit_ms);
     out += fmt::format("  of {} contact ticks: lost {}, sunk {}, wrong side {}, stuck {}\n  "
                        "largest force step {:.3f} N, force {:.2f} N (at 500 N/m)\n",
                        q.contact_ticks, q.lost, q.sunk, q.wrong_side, q.stuck, q.max_force_step_n,

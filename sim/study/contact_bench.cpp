@@ -42,6 +42,7 @@ struct Run {
     MeshView mesh;
     haptics::ProxyState state;
     std::vector<double> refit_ns;
+    PreemptionWatch watch;
 
     void begin() {
         state = {};
@@ -68,6 +69,7 @@ struct Answer {
     SurfaceHit hit; // of the query alone
     dvec3 proxy_m{0.0}, force_n{0.0};
     double ns = 0.0;
+    bool preempted = false;
 };
 
 Answer timed_tick(Run& run, const dvec3& device_m) {
@@ -77,6 +79,7 @@ Answer timed_tick(Run& run, const dvec3& device_m) {
         const std::uint64_t from = run.clock.start();
         out.hit = run.method.closest(run.mesh, device_m, o.reach_m);
         out.ns = run.clock.ns(from, run.clock.stop());
+        out.preempted = run.watch.preempted(out.ns);
         return out;
     }
     const haptics::ProxyInput input{device_m, o.radius_m, o.stiffness_npm, o.static_friction,
@@ -84,6 +87,7 @@ Answer timed_tick(Run& run, const dvec3& device_m) {
     const std::uint64_t from = run.clock.start();
     run.method.step(run.mesh, input, run.state);
     out.ns = run.clock.ns(from, run.clock.stop());
+    out.preempted = run.watch.preempted(out.ns);
     out.proxy_m = run.state.proxy_m;
     out.force_n = run.state.force_n;
     return out;
@@ -164,7 +168,7 @@ TickTimes cold_times(Run& run, const std::vector<char>& is_contact) {
         if (keep)
             evictor.evict();
         const Answer answer = timed_tick(run, run.scene.path_m[tick]);
-        if (keep)
+        if (keep && !answer.preempted)
             ns.push_back(answer.ns);
     }
     return tick_times(std::move(ns));
@@ -218,7 +222,7 @@ ContactBench run_contact_bench(const ContactScene& scene, const ContactBenchOpti
     out.triangles = scene.work.triangle.size();
     out.clock_overhead_ns = clock.overhead_ns();
 
-    Run run{scene, o, clock, {}, {}, {}, {}, {}};
+    Run run{scene, o, clock, {}, {}, {}, {}, {}, {}};
     follow(scene.work, scene.breathing, 0, run.skin);
     run.mesh = run.skin.view(scene.work);
     const std::uint64_t from = clock.start();
@@ -240,8 +244,11 @@ ContactBench run_contact_bench(const ContactScene& scene, const ContactBenchOpti
 
     const std::vector<char> is_contact = judge(run, answers, out);
     std::vector<double> contact_ns, free_ns;
-    for (std::size_t tick = 0; tick < answers.size(); ++tick)
-        (is_contact[tick] ? contact_ns : free_ns).push_back(answers[tick].ns);
+    for (std::size_t tick = 0; tick < answers.size(); ++tick) {
+        out.preempted += answers[tick].preempted;
+        if (!answers[tick].preempted)
+            (is_contact[tick] ? contact_ns : free_ns).push_back(answers[tick].ns);
+    }
     out.contact = tick_times(std::move(contact_ns));
     out.free = tick_times(std::move(free_ns));
     if (o.cold)

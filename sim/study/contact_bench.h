@@ -45,6 +45,7 @@ struct ContactBench {
     /// By what the device did in that tick: contact if its centre is not on the entry side or
     /// within the radius of the skin. cold: contact ticks before which the caches were driven out.
     TickTimes contact, free, cold;
+    int preempted = 0; // hot ticks left out of the times, as another got the processor
     double build_ms = 0.0;
     double refit_ms = 0.0; // mean over the frames of the run; at rest: median of nine
     ContactQuality quality;

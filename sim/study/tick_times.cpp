@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <sys/resource.h>
 #include <unistd.h>
 
 namespace sim {
@@ -13,7 +14,26 @@ double at_share(const std::vector<double>& sorted, double share) {
     return sorted[std::max<std::size_t>(1, static_cast<std::size_t>(rank)) - 1];
 }
 
+long involuntary_switches() {
+#if defined(RUSAGE_THREAD)
+    rusage usage{};
+    if (getrusage(RUSAGE_THREAD, &usage) == 0)
+        return usage.ru_nivcsw;
+#endif
+    return 0;
+}
+
 } // namespace
+
+PreemptionWatch::PreemptionWatch() : switches_(involuntary_switches()) {}
+
+bool PreemptionWatch::preempted(double ns) noexcept {
+    if (ns < 1e5)
+        return false;
+    const long before = switches_;
+    switches_ = involuntary_switches();
+    return switches_ != before;
+}
 
 TickClock::TickClock() {
     using Steady = std::chrono::steady_clock;

@@ -63,6 +63,18 @@ struct TickTimes {
 };
 TickTimes tick_times(std::vector<double> ns);
 
+/// Whether somebody else got the processor during a call, which then says nothing about it. Asked
+/// of the system only for calls of 0.1 ms and more, so that it disturbs no others: what is
+/// shorter was not taken away for a scheduler's slice.
+class PreemptionWatch {
+  public:
+    PreemptionWatch();
+    bool preempted(double ns) noexcept;
+
+  private:
+    long switches_ = 0; // involuntary ones of this thread, so far
+};
+
 /// Drives everything out of the caches, code too, by writing twice the last level's size (as the
 /// system tells it; 64 MB if it does not).
 class CacheEvictor {

@@ -32,7 +32,8 @@ double number(const std::string& option, const std::string& text) {
 struct Times {
     std::vector<double> contact_ns, free_ns, refit_ns;
     double distance_sum_m = 0.0;
-    int missed = 0; // contact ticks in which the peer found no skin
+    int missed = 0;    // contact ticks in which the peer found no skin
+    int preempted = 0; // ticks left out of the times
 };
 
 /// The path once; `evict` before every `every`th contact tick, and only those are kept. Which ticks
@@ -45,6 +46,7 @@ Times run_path(const Peer& peer, const PeerOptions& o, const sim::ContactWorkloa
     is_contact.resize(path.size());
     Times out;
     sim::MovingSkin skin;
+    sim::PreemptionWatch watch;
     int contacts = 0;
     for (std::size_t tick = 0; tick < path.size(); ++tick) {
         follow(work, o.breathing, static_cast<int>(tick), skin);
@@ -61,6 +63,8 @@ Times run_path(const Peer& peer, const PeerOptions& o, const sim::ContactWorkloa
         const std::uint64_t from = clock.start();
         const PeerAnswer answer = peer.ask(path[tick]);
         const double ns = clock.ns(from, clock.stop());
+        const bool preempted = watch.preempted(ns);
+        out.preempted += preempted;
         if (learn)
             is_contact[tick] = side_of(work, skin.now_m, path[tick]) != 1 ||
                                (answer.hit && answer.distance_m <= o.radius_m);
@@ -69,7 +73,7 @@ Times run_path(const Peer& peer, const PeerOptions& o, const sim::ContactWorkloa
             out.distance_sum_m += answer.hit ? answer.distance_m : 0.0;
             out.missed += !answer.hit;
         }
-        if (keep)
+        if (keep && !preempted)
             (is_contact[tick] ? out.contact_ns : out.free_ns).push_back(ns);
     }
     return out;
@@ -145,6 +149,7 @@ ordered_json run_peer(const PeerOptions& o, const sim::ContactWorkload& work,
                                                       : sim::tick_times(hot.refit_ns).mean_ns)},
             {"distance_sum_m", peer.closest ? hot.distance_sum_m : 0.0},
             {"missed", hot.missed},
+            {"preempted", hot.preempted},
             {"reach_m", o.reach_m},
             {"clock_overhead_ns", clock.overhead_ns()}};
 }

@@ -62,10 +62,14 @@ TEST_CASE("contact bench: every tick is a contact tick or a free one, and cold o
     o.cold_every = 100;
     const auto b = sim::run_contact_bench(scene, o);
     CHECK(b.triangles == 980);
-    CHECK(b.contact.n + b.free.n == 2000);
-    CHECK(b.contact.n == static_cast<std::size_t>(b.quality.contact_ticks));
+    const auto left_out = static_cast<std::size_t>(b.preempted);
+    const auto contacts = static_cast<std::size_t>(b.quality.contact_ticks);
+    CHECK(b.contact.n + b.free.n + left_out == 2000);
+    CHECK(b.contact.n <= contacts);
+    CHECK(b.contact.n + left_out >= contacts);
     CHECK(b.contact.n > 700);
-    CHECK(b.cold.n == (b.contact.n + 99) / 100);
+    CHECK(b.cold.n <= (contacts + 99) / 100);
+    CHECK(b.cold.n > 0);
     CHECK(b.cold.p50_ns > b.contact.p50_ns);
     CHECK(b.missed == 0);
     CHECK(b.tick.size() == 2000);
@@ -87,7 +91,8 @@ TEST_CASE("contact bench: the nearest-point method and penalty push out of a she
 
 TEST_CASE("contact bench: a god-object holds on a sheet at rest and is lost on one that breathes") {
     const auto rest = run(sim::built_in_scene("sheet:1k", 2.0, 1, 0.002, {}), "god-object");
-    CHECK(rest.contact.n > 700); // of the ball, of which the point feels the deeper part
+    CHECK(rest.contact.n + static_cast<std::size_t>(rest.preempted) >
+          700); // of the ball, of which the point feels the deeper part
     CHECK(rest.quality.contact_ticks > 400);
     CHECK(rest.quality.bad == 0);
     const auto breathing = run(
