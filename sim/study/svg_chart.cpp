@@ -10,9 +10,10 @@ namespace {
 
 constexpr double kWidth = 1000.0, kHeight = 560.0;
 constexpr double kLeft = 80.0, kRight = 640.0, kTop = 50.0, kBottom = 490.0;
-// colours that stay apart for the colour-blind (Okabe, Ito 2008)
-constexpr std::array<const char*, 8> kColour{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                             "#e69f00", "#56b4e9", "#000000", "#8a8a00"};
+// the first eight stay apart for the colour-blind (Okabe, Ito 2008)
+constexpr std::array<const char*, 12> kColour{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                              "#e69f00", "#56b4e9", "#000000", "#8a8a00",
+                                              "#7570b3", "#a50026", "#888888", "#66c2a5"};
 
 std::string escaped(const std::string& text) {
     std::string out;
