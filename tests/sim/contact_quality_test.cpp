@@ -123,6 +123,13 @@ TEST_CASE("quality: a proxy below where the ball rests is sunk, beyond the limit
     }
 }
 
+TEST_CASE(
+    "quality: a proxy that dips while the device is free is not sunk: nothing is felt there") {
+    Moment m = perfect({0.0, 0.0, 0.003});
+    m.proxy_m.z = kRadius_m - 0.0005;
+    check(judged({m}), {0, 0, 0, 0, 0});
+}
+
 TEST_CASE("quality: a proxy within or below the slab is on the wrong side, pressed or not") {
     Moment under = perfect({0.0, 0.0, -0.0008});
     under.proxy_m.z = -0.001 - kRadius_m; // where the nearest-point method puts it
@@ -208,5 +215,23 @@ TEST_CASE("mesh sides: the nearest point's pseudonormal agrees with how the mesh
                     (side_of(work, work.rest_m, place) == 0));
         }
         CHECK(on_edges > 50); // the case that a face's normal alone gets wrong
+    }
+}
+
+TEST_CASE("mesh sides: a vertex is not turned by how finely one of its faces is cut") {
+    // a needle along z; the face to +x is cut into ten, which pull a plain mean of normals over
+    std::vector<dvec3> vertex{{0.0, 0.0, 1.0}, {-0.1, 0.1, 0.0}, {-0.1, -0.1, 0.0}};
+    for (int i = 0; i <= 10; ++i)
+        vertex.push_back({0.1, -0.1 + 0.02 * i, 0.0});
+    std::vector<Corners> triangle{{0, 1, 2}, {0, 2, 3}, {0, 13, 1}};
+    for (std::uint32_t i = 3; i < 13; ++i)
+        triangle.push_back({0, i, i + 1});
+    const haptics::MeshView mesh{vertex, triangle, {}};
+    const sim::MeshSides sides(triangle, vertex.size());
+    for (const dvec3& out : {dvec3{-0.5, 0.0, 1.0}, {0.5, 0.0, 1.0}, {0.0, 0.5, 1.0}}) {
+        const dvec3 place = vertex[0] + out;
+        haptics::SurfaceHit apex{.triangle = 5, .weight = {1.0, 0.0, 0.0}, .place_m = vertex[0]};
+        CHECK(sides.side_of(mesh, apex, place) == 1);
+        CHECK(sides.side_of(mesh, apex, vertex[0] - out) == 0);
     }
 }
