@@ -105,9 +105,9 @@ SurfaceHit closest_within(const WideTree& tree, const MeshView& mesh, WideRing& 
 SurfaceHit closest_within(const WideTree& tree, const MeshView& mesh, const glm::dvec3& place_m,
                           double radius_m) noexcept;
 
-struct NearTriangle {
-    std::uint32_t triangle = kNoSurface;
-    double least_m = 0.0; // not farther than this it may be, nearer not
+struct NearTriangle { // not initialised: there are many, and they are filled
+    std::uint32_t triangle;
+    double least_m; // it may be as near as this, not nearer
 };
 
 /// The triangles of the mesh as it is now that come within a radius of a place: all of them, and

@@ -70,7 +70,7 @@ void HoldingPlanes::add(std::uint32_t triangle, const TriangleCorners& corner,
         if (plane[i].normal == made.normal && plane[i].offset_m >= made.offset_m)
             return;
     plane[count] = made;
-    from[count++] = {triangle, nearest.weight, n};
+    from[count++] = {triangle, nearest.weight};
 }
 
 double hover_of(const MeshView& mesh, const ProxyInput& in) noexcept {
@@ -85,7 +85,7 @@ double hover_of(const MeshView& mesh, const ProxyInput& in) noexcept {
     }
     for (int axis = 0; axis < 3; ++axis)
         coordinate_m = std::max(coordinate_m, std::abs(in.device_m[axis]));
-    return 4.0 * kSweepGap * (in.radius_m > 0.0 ? in.radius_m : 0.025 * edge_m) +
+    return 4.0 * kSweepGap * (in.radius_m > 0.0 ? in.radius_m : 0.1 * edge_m) +
            1024.0 * std::numeric_limits<double>::epsilon() * coordinate_m;
 }
 

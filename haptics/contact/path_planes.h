@@ -28,8 +28,12 @@ void look_around(const CollisionIndex& index, const MeshView& mesh, const glm::d
 struct HoldingPlanes {
     static constexpr int kRoom = 16;
     int count = 0;
+    struct Source {
+        std::uint32_t triangle;
+        glm::dvec3 weight;
+    };
     std::array<Plane, kRoom> plane;
-    std::array<ProxyContact, kRoom> from;
+    std::array<Source, kRoom> from;
 
     /// The plane that touches the triangle, grown by `radius_m`, at the point nearest to
     /// `centre_m`; the triangle's own if the ball is beside its edge by next to nothing, so that
@@ -40,8 +44,8 @@ struct HoldingPlanes {
 };
 
 /// How far off a surface a proxy rests, for as long as it lives; half of it is a touch. A share of
-/// the ball (for a point: of the mesh's first edges), and the rounding of coordinates: far more than
-/// what a sweep takes for contact, far less than anybody feels.
+/// the ball (for a point: of the mesh's first edges), and the rounding of coordinates: far more
+/// than what a sweep takes for contact, far less than anybody feels.
 double hover_of(const MeshView& mesh, const ProxyInput& in) noexcept;
 
 } // namespace haptics

@@ -12,9 +12,9 @@
 
 namespace haptics {
 
-struct Plane {
-    glm::dvec3 normal{0.0, 0.0, 1.0}; // unit
-    double offset_m = 0.0;            // allowed: normal . x >= offset
+struct Plane {         // not initialised: there is room for many, and few are used
+    glm::dvec3 normal; // unit
+    double offset_m;   // allowed: normal . x >= offset
 };
 
 struct PlaneSolution {

@@ -20,6 +20,9 @@ struct Passing {
     int count = 0;
     std::array<std::uint32_t, kRoom> triangle;
     std::array<MovingTriangle, kRoom> path;
+    std::array<double, kRoom> least_m; // they may come as near as this to the ball
+    double fastest_m = 0.0;            // what any of them comes nearer by
+    double known_m = 0.0;              // what is not among them stays farther
 };
 
 // Where the ball would be at a time of the interval if it kept its place on what it leans on: the
@@ -70,23 +73,42 @@ double nears_m(const MovingTriangle& t, const dvec3& way_m) noexcept {
     return out;
 }
 
+// Those that can come within `reach_m` of a ball that rides along. If there are more than there is
+// room for, the ones that can come nearest.
 void find_passing(const CollisionIndex& index, const MeshView& mesh, const dvec3& centre_m,
                   const dvec3& way_m, double reach_m, Passing& out) noexcept {
     Reach reach{centre_m, centre_m + way_m, reach_m};
     out.count = 0;
+    out.fastest_m = 0.0;
+    out.known_m = reach_m;
+    const auto put = [&](int at, std::uint32_t t, const MovingTriangle& path, double least_m) {
+        out.triangle[at] = t;
+        out.path[at] = path;
+        out.least_m[at] = least_m;
+    };
     std::visit(
         [&](const auto& method) {
             visit(method, reach, [&](std::uint32_t t) {
                 const MovingTriangle path{mesh.corners_before(t), mesh.corners(t)};
-                const double distance =
-                    std::sqrt(nearest_on_triangle(path.before, centre_m).distance2_m2);
-                if (!(distance <= reach_m + nears_m(path, way_m)) || out.count == Passing::kRoom)
+                const double nears = nears_m(path, way_m);
+                const double least_m =
+                    std::sqrt(nearest_on_triangle(path.before, centre_m).distance2_m2) - nears;
+                if (!(least_m <= out.known_m))
                     return;
                 for (int i = 0; i < out.count; ++i)
                     if (out.triangle[i] == t)
                         return;
-                out.triangle[out.count] = t;
-                out.path[out.count++] = path;
+                out.fastest_m = std::max(out.fastest_m, nears);
+                if (out.count < Passing::kRoom) {
+                    put(out.count++, t, path, least_m);
+                    return;
+                }
+                const auto last = std::max_element(out.least_m.begin(), out.least_m.end());
+                out.known_m = std::max(least_m, *last); // of the one that is left out
+                if (least_m < *last) {
+                    out.known_m = *last;
+                    put(static_cast<int>(last - out.least_m.begin()), t, path, least_m);
+                }
             });
         },
         index);
@@ -191,17 +213,20 @@ void ride_along(const CollisionIndex& index, const MeshView& mesh, const ProxyIn
     const double hover = state.hover_m;
     const double rest_m = in.radius_m + hover;
     const dvec3 way_m = ride.at(1.0) - ride.start_m;
-    // triangles are known this far around the way, so it may not stray farther
-    const double stray_m = ride.longest_m + 4.0 * hover;
+    // a ball pushed aside strays from the way: by as much as it is pushed, and somewhat more
     Passing passing;
+    find_passing(index, mesh, state.proxy_m, way_m, rest_m + ride.longest_m + 4.0 * hover, passing);
+    const double stray_m = ride.longest_m + passing.fastest_m + 4.0 * hover;
     find_passing(index, mesh, state.proxy_m, way_m, rest_m + stray_m, passing);
+    const double most_m =
+        std::min(0.5 * stray_m + 0.5 * passing.fastest_m, std::max(passing.known_m - rest_m, 0.0));
 
     double part = 1.0;
     for (Interval time{0.0, 1.0}; time.from < 1.0;
          time = {time.to, std::min(1.0, time.to + part)}) {
         Passage passage = pass(passing, ride, time, state.proxy_m, rest_m, hover);
         while (part > kShortestPart &&
-               !(passage.free && glm::length(passage.end_m - ride.at(time.to)) <= 0.5 * stray_m)) {
+               !(passage.free && glm::length(passage.end_m - ride.at(time.to)) <= most_m)) {
             part *= 0.5;
             time.to = std::min(1.0, time.from + part);
             passage = pass(passing, ride, time, state.proxy_m, rest_m, hover);

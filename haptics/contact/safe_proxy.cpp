@@ -9,15 +9,16 @@ namespace {
 
 using glm::dvec3;
 
-constexpr int kMostSteps = 6;   // straight ones in a tick
-constexpr int kMostTouches = 8; // that turn one of them aside
+constexpr int kMostSteps = 3;   // straight ones in a tick
+constexpr int kMostTouches = 6; // that turn one of them aside
 
 struct Walk {
     const ProxyInput& in;
-    double hover_m;   // this far off it rests,
-    double touch_m;   // radius and half the hover: what a path has to keep
-    double longest_m; // step that the neighbourhood is good for
-    bool slid;        // in the last tick
+    double hover_m;    // this far off it rests,
+    double touch_m;    // radius and half the hover: what a path has to keep
+    double longest_m;  // step that the neighbourhood is good for
+    double rounding_m; // of coordinates and their differences
+    bool slid;         // in the last tick
 };
 
 // Coulomb in a proxy's terms: the way along the surface is the tangential force, from the device
@@ -77,29 +78,73 @@ bool behind_a_plane(const HoldingPlanes& planes, const TriangleCorners& corner,
     return false;
 }
 
-struct FirstTouch {
-    int index = -1; // in the neighbourhood
-    TriangleSweep sweep;
+// What a straight path of the centre meets.
+struct Met {
+    int index = -1; // in the neighbourhood; -1: nothing
+    double time = 2.0;
+    TrianglePoint at; // nearest to `centre_m`, from which a plane may be made
+    dvec3 centre_m{0.0};
 };
 
-FirstTouch first_touch(const Neighbourhood& around, const Walk& walk, const HoldingPlanes& planes,
-                       const dvec3& looked_m, const dvec3& from_m, const dvec3& to_m) noexcept {
-    FirstTouch first;
-    const double way_m = glm::length(to_m - from_m);
-    const double off_m = std::max(glm::length(from_m - looked_m), glm::length(to_m - looked_m));
-    for (int i = 0; i < around.count; ++i) {
-        if (around.near[i].least_m > walk.touch_m + std::min(off_m, way_m + off_m) ||
-            behind_a_plane(planes, around.corner[i], walk.touch_m))
-            continue;
-        const TriangleSweep sweep =
-            sweep_ball({around.corner[i], around.corner[i]}, from_m, to_m, walk.touch_m);
-        if (sweep.time <= 1.0 && sweep.time < first.sweep.time)
-            first = {i, sweep};
-    }
-    return first;
+// Two ends in front of a plane that touches the triangle: nothing in between meets it. The plane's
+// direction is off by the rounding of coordinates over the distance, which tells at the far end.
+bool parts(const TrianglePoint& nearest, const dvec3& centre_m, const dvec3& other_m,
+           const Walk& walk) noexcept {
+    if (!(nearest.distance2_m2 >= walk.touch_m * walk.touch_m))
+        return false;
+    const dvec3 far = other_m - nearest.place_m;
+    return glm::dot(centre_m - nearest.place_m, far) >=
+           walk.touch_m * std::sqrt(nearest.distance2_m2) + walk.rounding_m * glm::length(far);
 }
 
-enum class Step { arrived, shortened, blocked };
+// If some triangles are in the way only at its end, and from the start a plane can be seen between,
+// the one that is deepest there; else the first to be touched by the moving ball.
+Met meets(const Neighbourhood& around, const Walk& walk, const HoldingPlanes& planes,
+          const dvec3& looked_m, const dvec3& from_m, const dvec3& to_m) noexcept {
+    Met first, deepest;
+    const double off_m = std::max(glm::length(from_m - looked_m), glm::length(to_m - looked_m));
+    double deepest2_m2 = walk.touch_m * walk.touch_m;
+    for (int i = 0; i < around.count; ++i) {
+        const TriangleCorners& corner = around.corner[i];
+        if (around.near[i].least_m > walk.touch_m + off_m ||
+            behind_a_plane(planes, corner, walk.touch_m))
+            continue;
+        const TrianglePoint end = nearest_on_triangle(corner, to_m);
+        if (parts(end, to_m, from_m, walk))
+            continue;
+        const TrianglePoint start = nearest_on_triangle(corner, from_m);
+        if (parts(start, from_m, to_m, walk))
+            continue;
+        const dvec3 offset = to_m - end.place_m;
+        if (end.distance2_m2 < walk.touch_m * walk.touch_m && end.distance2_m2 > 0.0 &&
+            glm::dot(offset, from_m - end.place_m) >=
+                (walk.touch_m + walk.hover_m) * std::sqrt(end.distance2_m2)) {
+            if (end.distance2_m2 < deepest2_m2) {
+                deepest2_m2 = end.distance2_m2;
+                deepest = {i, 1.0, end, to_m};
+            }
+            continue;
+        }
+        const TriangleSweep sweep = sweep_ball({corner, corner}, from_m, to_m, walk.touch_m);
+        if (sweep.time <= 1.0 && sweep.time < first.time)
+            first = {i, sweep.time, sweep.on_triangle, from_m + sweep.time * (to_m - from_m)};
+    }
+    return first.index >= 0 ? first : deepest;
+}
+
+// How far along a path nothing is met.
+double free_part(const Neighbourhood& around, const Walk& walk, const HoldingPlanes& planes,
+                 const dvec3& from_m, const dvec3& to_m) noexcept {
+    double time = 1.0;
+    for (int i = 0; i < around.count; ++i)
+        if (!behind_a_plane(planes, around.corner[i], walk.touch_m))
+            time = std::min(
+                time,
+                sweep_ball({around.corner[i], around.corner[i]}, from_m, to_m, walk.touch_m).time);
+    return time;
+}
+
+enum class Step { arrived, turned, shortened, blocked };
 
 // One straight step of the centre, turned aside by what it would meet.
 Step step(const Neighbourhood& around, const Walk& walk, const dvec3& looked_m,
@@ -117,18 +162,18 @@ Step step(const Neighbourhood& around, const Walk& walk, const dvec3& looked_m,
         const bool too_far = way_m > walk.longest_m;
         const dvec3 to_m =
             too_far ? centre_m + walk.longest_m / way_m * (wanted_m - centre_m) : wanted_m;
-        const FirstTouch met = first_touch(around, walk, planes, looked_m, centre_m, to_m);
-        if (met.index < 0 || touch == kMostTouches) {
-            centre_m = met.index < 0 ? to_m : centre_m + met.sweep.time * (to_m - centre_m);
+        const Met met = meets(around, walk, planes, looked_m, centre_m, to_m);
+        if (met.index < 0) {
+            centre_m = to_m;
             sliding = slides;
-            return too_far || met.index >= 0 ? Step::shortened : Step::arrived;
+            return too_far ? Step::shortened : touch > 0 ? Step::turned : Step::arrived;
         }
-        const dvec3 there_m = centre_m + met.sweep.time * (to_m - centre_m);
         const int before = planes.count;
-        planes.add(around.near[met.index].triangle, around.corner[met.index], met.sweep.on_triangle,
-                   there_m, walk.in.radius_m + walk.hover_m);
-        if (planes.count == before) { // nothing new to turn aside by: as far as it is free
-            centre_m = there_m;
+        planes.add(around.near[met.index].triangle, around.corner[met.index], met.at, met.centre_m,
+                   walk.in.radius_m + walk.hover_m);
+        if (planes.count == before || touch == kMostTouches) { // as far as it is free
+            centre_m += free_part(around, walk, planes, centre_m, to_m) * (to_m - centre_m);
+            sliding = slides;
             return Step::shortened;
         }
     }
@@ -142,7 +187,8 @@ void tell_contacts(const HoldingPlanes& planes, const ProxyInput& in, double hov
         const Plane& p = planes.plane[i];
         if (glm::dot(p.normal, state.proxy_m) - p.offset_m <= 2.0 * hover_m &&
             glm::dot(p.normal, in.device_m) < p.offset_m)
-            state.contact[state.contacts++] = planes.from[i];
+            state.contact[state.contacts++] = {planes.from[i].triangle, planes.from[i].weight,
+                                               p.normal};
     }
     state.touching = state.contacts > 0;
     if (state.touching)
@@ -163,12 +209,17 @@ void approach(const CollisionIndex& index, const MeshView& mesh, const ProxyInpu
               double most_m, ProxyState& state) noexcept {
     const dvec3 start_m = state.proxy_m;
     const double pull_m = glm::length(in.device_m - start_m);
-    // as far as it came last time, and half more; a proxy in the air goes all the way
-    const double guess_m = state.touching ? 1.5 * state.step_m + 0.02 * pull_m : pull_m;
+    // as far as the device, and a little for what has piled up; in the air all the way
+    const double guess_m = state.touching ? 1.25 * glm::length(in.device_m - state.device_m) +
+                                                0.25 * state.step_m + 0.005 * pull_m
+                                          : pull_m;
     Walk walk{.in = in,
               .hover_m = state.hover_m,
               .touch_m = 0.0,
               .longest_m = std::min({guess_m, pull_m, most_m}),
+              .rounding_m =
+                  16.0 * std::numeric_limits<double>::epsilon() *
+                  (std::abs(start_m.x) + std::abs(start_m.y) + std::abs(start_m.z) + pull_m),
               .slid = state.sliding};
     walk.touch_m = in.radius_m + 0.5 * walk.hover_m;
     const double least_m = in.radius_m + 3.0 * walk.hover_m;
@@ -181,9 +232,9 @@ void approach(const CollisionIndex& index, const MeshView& mesh, const ProxyInpu
     for (int i = 0; i < kMostSteps && most_m > 0.0; ++i) {
         walk.longest_m = std::min(walk.longest_m, most_m);
         const double gone_m = glm::length(state.proxy_m - looked_m);
-        if (gone_m + 0.5 * walk.longest_m > known_m) {
+        if (gone_m + 0.25 * walk.longest_m > known_m) {
             looked_m = state.proxy_m;
-            look_around(index, mesh, looked_m, least_m + 2.0 * walk.longest_m, least_m, state.ring,
+            look_around(index, mesh, looked_m, least_m + 1.25 * walk.longest_m, least_m, state.ring,
                         around);
             known_m = around.reach_m - least_m;
         }
@@ -197,7 +248,7 @@ void approach(const CollisionIndex& index, const MeshView& mesh, const ProxyInpu
             look_around(index, mesh, looked_m, least_m + way_m, least_m, state.ring, around);
             known_m = around.reach_m - least_m;
             if (way_m <= known_m &&
-                first_touch(around, walk, planes, looked_m, looked_m, in.device_m).index < 0) {
+                meets(around, walk, planes, looked_m, looked_m, in.device_m).index < 0) {
                 state.proxy_m = in.device_m;
                 break;
             }
@@ -206,9 +257,8 @@ void approach(const CollisionIndex& index, const MeshView& mesh, const ProxyInpu
         const Step done = step(around, now, looked_m, planes, state.proxy_m, sliding);
         const double way_m = glm::length(state.proxy_m - from_m);
         most_m -= way_m;
-        if (done == Step::blocked || way_m <= walk.hover_m ||
-            (done == Step::arrived && i > 0 && way_m < 1e-3 * pull_m))
-            break;
+        if (done == Step::blocked || done == Step::arrived || way_m <= walk.hover_m)
+            break; // what turns with the surface on the way is left to the next tick
         if (done == Step::shortened)
             walk.longest_m = std::min(2.0 * walk.longest_m, pull_m);
     }
