@@ -16,13 +16,13 @@
 namespace sim::failure {
 namespace {
 
-constexpr double kSize_m = 0.08, kRadius_m = 1e-3, kWalk_m = 2e-3;
+constexpr double kSize_m = 0.03, kRadius_m = 1e-3, kWalk_m = 2e-3;
 constexpr double kDegree = kPi / 180.0;
 
 struct Corner {
     std::string name;
     Scene scene{};
-    std::vector<dvec3> normal{}; // walls through the origin
+    std::vector<dvec3> normal{}; // of the walls, through the origin, in the order of the quads
     double sine = 1.0;           // between walls: an error grows by 1 over it where they meet
     bool blunt = false;
 };
@@ -43,7 +43,7 @@ Corner cube() {
     c.scene.quad({0, 0, 0}, {s, 0, 0}, {s, s, 0}, {0, s, 0});
     c.scene.quad({0, 0, 0}, {0, s, 0}, {0, s, s}, {0, 0, s});
     c.scene.quad({0, 0, 0}, {0, 0, s}, {s, 0, s}, {s, 0, 0});
-    c.normal = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    c.normal = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
     return c;
 }
 
@@ -80,17 +80,17 @@ struct Walked {
     double further_m = 0.0; // a step beyond the device's
 };
 
-/// A minute of random walk about the place where all walls hold the ball.
+/// A minute of random walk about the place where all walls hold the ball, `rest_m` off them.
 template <class Place>
-Walked walk(const Corner& corner, double radius_m, std::uint64_t seed, const Place& place_of) {
+Walked walk(const Corner& corner, double rest_m, std::uint64_t seed, const Place& place_of) {
     std::vector<haptics::Plane> plane;
     dvec3 middle_m{0.0};
     for (const dvec3& n : corner.normal)
-        plane.push_back({n, radius_m});
+        plane.push_back({n, rest_m});
     for (const dvec3& n : corner.normal)
         middle_m += n;
     const dvec3 inwards = glm::normalize(middle_m);
-    middle_m *= radius_m / glm::dot(middle_m, corner.normal[0]);
+    middle_m *= rest_m / glm::dot(middle_m, corner.normal[0]);
     Random random{std::mt19937_64(seed)};
     constexpr double kMemory_s = 1.0, keep = 1.0 - kTick_s / kMemory_s;
     const double kick_m = kWalk_m * std::sqrt(1.0 - keep * keep);
@@ -112,9 +112,25 @@ Walked walk(const Corner& corner, double radius_m, std::uint64_t seed, const Pla
     return out;
 }
 
-/// Rounding, and the gap at which a sweep touches: a millionth of the ball, or of a point's depth.
-double gap_m(const Corner& corner, double radius_m) {
-    return 1e-5 * (radius_m > 0.0 ? radius_m : 5.0 * kWalk_m) / corner.sine;
+/// How far off a wall the middle of a ball rests, pressed 2 mm: the radius and what a method keeps
+/// beyond it so that rounding does not matter. It is part of the ball here.
+double rest_m(const ContactMethod& method, Corner& corner) {
+    Scene& scene = corner.scene;
+    const auto [a, b, c] = scene.triangle[0];
+    const dvec3 middle_m = (scene.vertex[a] + scene.vertex[b] + scene.vertex[c]) / 3.0;
+    const dvec3 n = corner.normal[0];
+    scene.state = {};
+    for (int i = 0; i <= 50; ++i)
+        scene.tick(method, middle_m + (scene.input.radius_m + 5e-4 - 5e-5 * i) * n);
+    const double rests_m = glm::dot(n, scene.state.proxy_m);
+    scene.state = {};
+    return rests_m;
+}
+
+/// What rounding, a sweep and the hover may leave; a point's hover varies with its depth.
+double gap_m(const Corner& corner, double radius_m, double hover_m) {
+    const double least_m = 1e-5 * (radius_m > 0.0 ? radius_m : 5.0 * kWalk_m);
+    return std::max(least_m, hover_m) / corner.sine;
 }
 
 const std::string kOff = ": off the nearest allowed point, m";
@@ -128,12 +144,15 @@ void concave(const ContactMethod& method, std::uint64_t seed, Rows& rows) {
         Scene& scene = corner.scene;
         scene.ready();
         scene.input.radius_m = ball_m(method, kRadius_m);
-        const Walked walked = walk(corner, scene.input.radius_m, seed, [&](const dvec3& device_m) {
+        const double rests_m = rest_m(method, corner);
+        rows.at_most("F5", method.name, corner.name + ": rests off a wall beyond its radius, m",
+                     rests_m - scene.input.radius_m, 1e-6, false);
+        const Walked walked = walk(corner, rests_m, seed, [&](const dvec3& device_m) {
             const auto& state = scene.tick(method, device_m);
             return state.proxy_m;
         });
         const bool wrong = method.name == "god-object" && corner.blunt;
-        const double bound_m = gap_m(corner, scene.input.radius_m);
+        const double bound_m = gap_m(corner, scene.input.radius_m, rests_m - scene.input.radius_m);
         rows.at_most("F5", method.name, corner.name + kOff, walked.off_m, bound_m, wrong);
         rows.at_most("F5", method.name, corner.name + kFurther, walked.further_m, 2.0 * bound_m,
                      wrong);
@@ -148,7 +167,7 @@ void projections(std::uint64_t seed, Rows& rows) {
             return p;
         });
         rows.at_most("F5", "one plane after another", corner.name + kOff, walked.off_m,
-                     gap_m(corner, 0.0), true);
+                     gap_m(corner, 0.0, 0.0), true);
     }
 }
 

@@ -13,14 +13,14 @@ namespace sim::failure {
 namespace {
 
 constexpr double kStatic = 0.4, kDynamic = 0.3, kStiff_npm = 500.0, kPress_n = 1.0;
-constexpr double kRadius_m = 1e-3, kPull_n = 0.3;
+constexpr double kRadius_m = 1e-3, kPull_n = 0.3, kFloor_m = 0.1;
 
 struct Floor {
     Scene scene;
     double pressed_m = 0.0;
 
     explicit Floor(const ContactMethod& method) {
-        const double s = 20.0; // m: without friction a pull of 0.3 N goes far
+        const double s = kFloor_m;
         scene.quad({-s, -s, 0}, {s, -s, 0}, {s, s, 0}, {-s, s, 0});
         scene.ready();
         scene.input = {.radius_m = ball_m(method, kRadius_m),
@@ -32,12 +32,12 @@ struct Floor {
     }
 };
 
-/// Of the proxy under a steady pull of a free device, after it has settled.
+/// Of the proxy under a steady pull of a free device, after it has settled, or to the floor's edge.
 double creep_m(const ContactMethod& method) {
     Floor f(method);
     FreeAxis device;
     double from_m = 0.0;
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < 20000 && std::abs(device.place_m) < 0.9 * kFloor_m; ++i) {
         const auto& state = f.scene.tick(method, {device.place_m, 0, f.pressed_m});
         if (i == 10000)
             from_m = state.proxy_m.x;
