@@ -42,7 +42,9 @@ struct ClosestSearch {
 
     void operator()(std::uint32_t t) noexcept {
         const TrianglePoint near = nearest_on_triangle(mesh.corners(t), reach.from_m);
-        if (!(near.distance2_m2 < best2_m2 || (near.distance2_m2 == best2_m2 && t < best.triangle)))
+        if (!(near.distance2_m2 < best2_m2 ||
+              (near.distance2_m2 == best2_m2 && t < best.triangle)) ||
+            !std::isfinite(near.distance2_m2))
             return;
         best2_m2 = near.distance2_m2;
         best = {.triangle = t,

@@ -11,6 +11,7 @@ namespace {
 using glm::dvec3;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const dvec3 kAnywhere{0.0}; // outside of all edges, for all one knows
 // Of a triangle whose height is less than this share of its length, weights lose digits; squared.
 constexpr double kSliver = 1e-2;
 
@@ -26,25 +27,25 @@ void put(TrianglePoint& out, const TriangleCorners& seen, const dvec3& place) no
     out.place_m = place + offset;
 }
 
-TrianglePoint on_edge(const TriangleCorners& seen, int from, const dvec3& place) noexcept {
-    const int to = (from + 1) % 3;
-    const dvec3 edge = seen[to] - seen[from];
-    const double length2 = square(edge);
-    const double s =
-        length2 > 0.0 ? std::clamp(-glm::dot(seen[from], edge) / length2, 0.0, 1.0) : 0.0;
-    TrianglePoint out;
-    out.weight[from] = 1.0 - s;
-    out.weight[to] = s;
-    put(out, seen, place);
-    return out;
-}
-
-TrianglePoint on_nearest_edge(const TriangleCorners& seen, const dvec3& place) noexcept {
-    TrianglePoint best = on_edge(seen, 0, place);
-    for (int from = 1; from < 3; ++from)
-        if (const TrianglePoint other = on_edge(seen, from, place);
-            other.distance2_m2 < best.distance2_m2)
-            best = other;
+/// Of the edges that the place is outside of, as the weights of their opposite corners say.
+TrianglePoint on_nearest_edge(const TriangleCorners& seen, const dvec3& outside,
+                              const dvec3& place) noexcept {
+    TrianglePoint best{.distance2_m2 = kInfinity};
+    for (int from = 0; from < 3; ++from) {
+        const int to = (from + 1) % 3;
+        if (outside[(from + 2) % 3] > 0.0)
+            continue;
+        const dvec3 edge = seen[to] - seen[from];
+        const double length2 = square(edge), on = -glm::dot(seen[from], edge);
+        const double s = !(on > 0.0) ? 0.0 : on >= length2 ? 1.0 : on / length2;
+        const dvec3 offset = s == 1.0 ? seen[to] : seen[from] + s * edge;
+        const double distance2 = square(offset);
+        if (!(distance2 < best.distance2_m2))
+            continue;
+        best = {.place_m = place + offset, .distance2_m2 = distance2};
+        best.weight[from] = 1.0 - s;
+        best.weight[to] = s;
+    }
     return best;
 }
 
@@ -53,20 +54,6 @@ TrianglePoint on_corner(const TriangleCorners& corner, const TriangleCorners& se
     TrianglePoint out{.place_m = corner[k], .distance2_m2 = square(seen[k])};
     out.weight[k] = 1.0;
     return out;
-}
-
-/// The nearest of the edges that the foot of the perpendicular is beyond.
-TrianglePoint beside(const TriangleCorners& seen, const dvec3& weight,
-                     const dvec3& place) noexcept {
-    TrianglePoint best{.distance2_m2 = kInfinity};
-    for (int from = 0; from < 3; ++from) {
-        if (weight[(from + 2) % 3] >= 0.0)
-            continue;
-        if (const TrianglePoint other = on_edge(seen, from, place);
-            other.distance2_m2 < best.distance2_m2)
-            best = other;
-    }
-    return best;
 }
 
 /// The foot of the perpendicular in a base along the longest edge and square to it (twice, or the
@@ -117,8 +104,10 @@ TrianglePoint nearest_on_triangle(const TriangleCorners& corner, const dvec3& pl
     }
     const dvec3 n = glm::cross(ab, -ca);
     const double n2 = square(n);
-    if (!(n2 > 0.0))
-        return on_nearest_edge(seen, place_m);
+    if (!(n2 < kInfinity))
+        return {.distance2_m2 = kInfinity}; // a corner is not finite
+    if (n2 == 0.0)
+        return on_nearest_edge(seen, kAnywhere, place_m);
     const double ab2 = square(ab), bc2 = square(bc), ca2 = square(ca);
     const double longest2 = std::max({ab2, bc2, ca2});
     const bool sliver = n2 < kSliver * longest2 * longest2;
@@ -132,14 +121,12 @@ TrianglePoint nearest_on_triangle(const TriangleCorners& corner, const dvec3& pl
                       glm::dot(n, glm::cross(seen[0], ab))};
         out.weight /= out.weight.x + out.weight.y + out.weight.z;
     }
-    if (!sliver && std::min({out.weight.x, out.weight.y, out.weight.z}) < 0.0)
-        return beside(seen, out.weight, place_m);
     if (!(out.weight.x >= 0.0 && out.weight.y >= 0.0 && out.weight.z >= 0.0))
-        return on_nearest_edge(seen, place_m);
+        return on_nearest_edge(seen, sliver ? kAnywhere : out.weight, place_m);
     put(out, seen, place_m);
     if (!sliver && std::isfinite(out.distance2_m2))
         return out;
-    const TrianglePoint edge = on_nearest_edge(seen, place_m);
+    const TrianglePoint edge = on_nearest_edge(seen, kAnywhere, place_m);
     return out.distance2_m2 <= edge.distance2_m2 ? out : edge;
 }
 

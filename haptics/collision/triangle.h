@@ -19,7 +19,8 @@ struct TrianglePoint {
 
 /// The point of a triangle nearest to `place_m`: the foot of the perpendicular if that is inside,
 /// else the nearest of its edges (Ericson, Real-Time Collision Detection, 5.1). Off by some
-/// roundings of the coordinates and of the distance, also for slivers; without area, its edges.
+/// roundings of the coordinates and of the distance, also for slivers; without area, its edges;
+/// with a corner that is not finite, infinitely far.
 TrianglePoint nearest_on_triangle(const TriangleCorners& corner,
                                   const glm::dvec3& place_m) noexcept;
 

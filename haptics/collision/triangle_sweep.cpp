@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -16,7 +17,7 @@ constexpr int kMostAdvances = 256; // each is exact against a plane; a handful i
 constexpr int kPatience = 4;       // advances before a direction that turns is tried
 
 double largest(const dvec3& v) noexcept {
-    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
 }
 
 /// What counts as a touch.
@@ -39,18 +40,31 @@ struct Touch {
 
 Touch touch_of(const MovingTriangle& triangle, double coordinate_m, double motion_m,
                double radius_m) noexcept {
-    double moved_m = 0.0;
+    dvec3 far{coordinate_m}, moved{0.0};
     for (int k = 0; k < 3; ++k) {
-        coordinate_m =
-            std::max({coordinate_m, largest(triangle.before[k]), largest(triangle.after[k])});
-        moved_m = std::max(moved_m, largest(triangle.after[k] - triangle.before[k]));
+        far = glm::max(far, glm::max(glm::abs(triangle.before[k]), glm::abs(triangle.after[k])));
+        moved = glm::max(moved, glm::abs(triangle.after[k] - triangle.before[k]));
     }
     // offsets are up to 3.5 coordinates long, and so is the way; a few operations on both
-    const double rounding_m = 64.0 * std::numeric_limits<double>::epsilon() * coordinate_m;
+    const double rounding_m = 64.0 * std::numeric_limits<double>::epsilon() * largest(far);
     return {.radius_m = radius_m,
             .rounding_m = rounding_m,
             .enough_m = rounding_m + kSweepGap * radius_m,
-            .motion_m = 2.0 * (motion_m + moved_m)};
+            .motion_m = 2.0 * (motion_m + largest(moved))};
+}
+
+/// Cheap, and true of most that boxes of a mesh let through: what is swept stays on one side.
+bool far_apart(const MovingTriangle& t, const dvec3& low_m, const dvec3& high_m,
+               double thick_m) noexcept {
+    dvec3 low = t.before[0], high = low;
+    for (const dvec3& c : {t.before[1], t.before[2], t.after[0], t.after[1], t.after[2]}) {
+        low = glm::min(low, c);
+        high = glm::max(high, c);
+    }
+    low -= high_m + thick_m;
+    high -= low_m - thick_m;
+    return low.x > 0.0 || low.y > 0.0 || low.z > 0.0 || high.x < 0.0 || high.y < 0.0 ||
+           high.z < 0.0;
 }
 
 /// The unit direction from the body to the triangle. Near touch the offset between the nearest
@@ -148,6 +162,8 @@ double turning_advance(const Look& now, double time, LookAt&& look_at) noexcept 
 
 /// `look_at(time, left)` gives a Look.
 template <class LookAt> TriangleSweep advance(const Touch& touch, LookAt&& look_at) noexcept {
+    if (!(touch.rounding_m < kInfinity))
+        return {}; // of what is not finite
     double time = 0.0, least_gap_m = kInfinity;
     TriangleSweep nearest;
     for (int step = 0; step < kMostAdvances; ++step) {
@@ -185,6 +201,9 @@ TriangleSweep sweep_ball(const MovingTriangle& triangle, const dvec3& from_m, co
     const dvec3 motion = to_m - from_m;
     const Touch touch =
         touch_of(triangle, std::max(largest(from_m), largest(to_m)), largest(motion), radius_m);
+    if (far_apart(triangle, glm::min(from_m, to_m), glm::max(from_m, to_m),
+                  radius_m + touch.enough_m))
+        return {};
     return advance(touch, [&](double time, double left) {
         const TriangleCorners corner = triangle.at(time);
         const dvec3 centre = from_m + time * motion;
@@ -206,6 +225,13 @@ TriangleSweep sweep_capsule(const MovingTriangle& triangle, const MovingSegment&
                                           largest(s.from_after_m), largest(s.to_after_m)});
     const Touch touch =
         touch_of(triangle, coordinate_m, std::max(largest(move_from), largest(move_to)), radius_m);
+    if (far_apart(triangle,
+                  glm::min(glm::min(s.from_before_m, s.to_before_m),
+                           glm::min(s.from_after_m, s.to_after_m)),
+                  glm::max(glm::max(s.from_before_m, s.to_before_m),
+                           glm::max(s.from_after_m, s.to_after_m)),
+                  radius_m + touch.enough_m))
+        return {};
     return advance(touch, [&](double time, double left) {
         const TriangleCorners corner = triangle.at(time);
         const dvec3 from = s.from_before_m + time * move_from, to = s.to_before_m + time * move_to;

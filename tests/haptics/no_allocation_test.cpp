@@ -1,5 +1,7 @@
 #include "haptics/contact/coupling.h"
 
+#include "haptics/collision/index.h"
+#include "haptics/collision/witness.h"
 #include "haptics/contact/god_object.h"
 #include "haptics/contact/penalty.h"
 #include "haptics/contact/virtual_proxy.h"
@@ -7,6 +9,7 @@
 #include "haptics/device/virtual_device.h"
 #include "haptics/rigid/voxel_contacts.h"
 #include "haptics/safety/limits.h"
+#include "tests/haptics/collision_meshes.h"
 #include "tests/haptics/mass_spring.h"
 #include "tests/haptics/proxy_bench.h"
 #include "tests/haptics/rigid_scenes.h"
@@ -138,4 +141,39 @@ TEST_CASE("no allocation: a shell of points in a voxel map") {
                             contacts);
     CHECK(allocations == before);
     CHECK(contacts.count > 0);
+}
+
+TEST_CASE("no allocation: asking and refitting any collision method, also after a blow-up") {
+    CollisionRandom random{std::mt19937_64(1)};
+    CollisionMesh mesh = height_field(random, 20);
+    const haptics::Neighbours neighbours = haptics::make_neighbours(mesh.view());
+    mesh.before = mesh.vertex;
+    std::array<haptics::SurfaceHit, 8> found;
+    for (const std::string_view name : haptics::kCollisionNames) {
+        CAPTURE(name);
+        haptics::CollisionIndex index = haptics::make_index(name, mesh.view());
+        haptics::Witness witness{neighbours};
+        int hits = 0;
+        const int before = allocations;
+        for (int i = 0; i < 40; ++i) {
+            const glm::dvec3 from = random.place(1.0), to = random.place(1.0);
+            const haptics::MeshView view = mesh.view();
+            hits += closest_within(index, view, from, 1.0).hit();
+            hits += cast_segment(index, view, from, to).hit();
+            hits += sweep_sphere(index, view, from, to, 0.01).hit();
+            hits += sweep_shaft(index, view, {from, to, to, from}, 0.01).hit();
+            hits +=
+                contacts_within(index, view, from, 0.2, std::span<haptics::SurfaceHit>(found)) > 0;
+            std::visit(
+                [&](const auto& m) {
+                    hits += closest_within_cached(m, view, from, 1.0, witness).hit();
+                },
+                index);
+            for (glm::dvec3& v : mesh.vertex)
+                v += random.place(i == 20 ? 2.0 : 0.01);
+            refit(index, mesh.view());
+        }
+        CHECK(allocations == before);
+        CHECK(hits > 40);
+    }
 }
