@@ -138,6 +138,7 @@ void add_study(CLI::App& app, int& exit_code) {
     add_levels(*c);
     add_failures_study(*c, exit_code);
     add_scaling_study(*c, exit_code);
+    add_study_contact(*c);
 }
 
 } // namespace sim
