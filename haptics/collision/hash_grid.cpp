@@ -1,7 +1,5 @@
 #include "haptics/collision/hash_grid.h"
 
-#include "haptics/collision/item_box.h"
-
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -42,16 +40,19 @@ dvec3 moved_m(const MeshView& mesh, std::uint32_t t) noexcept {
 
 void list_triangle(CellTable& table, const MeshView& mesh, std::uint32_t t,
                    const CellRange& r) noexcept {
+    constexpr int kFew = 8; // cells: nearly all are met, to test them costs more than they do
     const dvec3 half = moved_m(mesh, t) + 0.5 * table.cell_m + table.fat_m;
     const std::array<dvec3, 3> corner = mesh.corners(t);
-    const bool one = r.low == r.high;
+    const bool few =
+        (r.high[0] - r.low[0] + 1) * (r.high[1] - r.low[1] + 1) * (r.high[2] - r.low[2] + 1) <=
+        kFew;
     CellPlace at;
     for (at[2] = r.low[2]; at[2] <= r.high[2]; ++at[2])
         for (at[1] = r.low[1]; at[1] <= r.high[1]; ++at[1])
             for (at[0] = r.low[0]; at[0] <= r.high[0]; ++at[0]) {
                 const dvec3 centre =
                     table.low_m + (dvec3{at[0], at[1], at[2]} + 0.5) * table.cell_m;
-                if (one ||
+                if (few ||
                     overlaps({corner[0] - centre, corner[1] - centre, corner[2] - centre}, half))
                     list_item(table, at, t);
             }

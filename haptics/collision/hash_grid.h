@@ -7,6 +7,7 @@
 #include "haptics/collision/cell_table.h"
 #include "haptics/collision/cell_walk.h"
 #include "haptics/collision/counted.h"
+#include "haptics/collision/item_box.h"
 #include "haptics/collision/mesh_view.h"
 #include "haptics/collision/seen_lately.h"
 
@@ -27,11 +28,16 @@ void refit(HashGrid& grid, const MeshView& mesh) noexcept;
 
 template <class Look> void visit(const HashGrid& grid, Reach& reach, Look&& look) {
     SeenLately seen;
+    const double slack_m = cell_walk::slack_m(grid.table.largest_m, reach);
     walk_cells(grid.table, reach, [&](std::uint32_t cell) {
         count_cell(look);
-        for (const CellTable::Entry& e : items_of(grid.table, cell))
-            if (seen.first_time(e.item))
+        for (const CellTable::Entry& e : items_of(grid.table, cell)) {
+            if (!seen.first_time(e.item))
+                continue;
+            count_box(look);
+            if (near(grid.box[e.item], reach, slack_m))
                 look(e.item);
+        }
     });
 }
 

@@ -1,7 +1,5 @@
 #include "haptics/collision/hybrid.h"
 
-#include "haptics/collision/item_box.h"
-
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>

@@ -7,6 +7,7 @@
 
 #include "haptics/collision/cell_table.h"
 #include "haptics/collision/cell_walk.h"
+#include "haptics/collision/item_box.h"
 #include "haptics/collision/obb_tree.h"
 #include "haptics/collision/seen_lately.h"
 
@@ -29,19 +30,6 @@ Hybrid make_hybrid(const MeshView& mesh);
 /// Measures trees and clusters anew, lists the clusters anew; no allocation.
 void refit(Hybrid& hybrid, const MeshView& mesh) noexcept;
 
-namespace hybrid_parts {
-
-/// Whether a reach comes near a box at all.
-inline bool near(const ItemBox& box, const Reach& reach, double slack_m) noexcept {
-    const double far_m = reach.radius_m + slack_m;
-    const glm::dvec3 low = glm::min(reach.from_m, reach.to_m) - far_m;
-    const glm::dvec3 high = glm::max(reach.from_m, reach.to_m) + far_m;
-    return low.x <= box.high_m.x && low.y <= box.high_m.y && low.z <= box.high_m.z &&
-           high.x >= box.low_m.x && high.y >= box.low_m.y && high.z >= box.low_m.z;
-}
-
-} // namespace hybrid_parts
-
 template <class Look> void visit(const Hybrid& hybrid, Reach& reach, Look&& look) {
     SeenLately seen;
     const double slack_m = cell_walk::slack_m(hybrid.table.largest_m, reach);
@@ -51,7 +39,7 @@ template <class Look> void visit(const Hybrid& hybrid, Reach& reach, Look&& look
             if (!seen.first_time(e.item))
                 continue;
             count_box(look);
-            if (!hybrid_parts::near(hybrid.box[e.item], reach, slack_m))
+            if (!near(hybrid.box[e.item], reach, slack_m))
                 continue;
             const Hybrid::Cluster& cluster = hybrid.cluster[e.item];
             visit(cluster.tree, reach, look);

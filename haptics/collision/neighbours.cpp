@@ -3,25 +3,37 @@
 #include <algorithm>
 
 namespace haptics {
+namespace {
+
+struct Edge {
+    std::uint32_t low, high, triangle, corner;
+    bool same_place(const Edge& other) const noexcept {
+        return low == other.low && high == other.high;
+    }
+};
+
+} // namespace
 
 Neighbours make_neighbours(const MeshView& mesh) {
-    std::vector<std::vector<std::uint32_t>> around(mesh.vertex_m.size());
+    std::vector<Edge> edge;
     for (std::uint32_t t = 0; t < mesh.triangle.size(); ++t)
-        for (const std::uint32_t v : mesh.triangle[t])
-            around[v].push_back(t);
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const std::uint32_t a = mesh.triangle[t][(k + 1) % 3],
+                                b = mesh.triangle[t][(k + 2) % 3];
+            edge.push_back({std::min(a, b), std::max(a, b), t, k});
+        }
+    std::stable_sort(edge.begin(), edge.end(), [](const Edge& a, const Edge& b) {
+        return a.low != b.low ? a.low < b.low : a.high < b.high;
+    });
     Neighbours out;
-    std::vector<std::uint32_t> ring;
-    for (std::uint32_t t = 0; t < mesh.triangle.size(); ++t) {
-        out.first.push_back(static_cast<std::uint32_t>(out.triangle.size()));
-        ring.clear();
-        for (const std::uint32_t v : mesh.triangle[t])
-            ring.insert(ring.end(), around[v].begin(), around[v].end());
-        std::sort(ring.begin(), ring.end());
-        ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
-        ring.erase(std::find(ring.begin(), ring.end(), t));
-        out.triangle.insert(out.triangle.end(), ring.begin(), ring.end());
+    out.across.assign(mesh.triangle.size(), {kNoSurface, kNoSurface, kNoSurface});
+    for (std::size_t first = 0, end; first < edge.size(); first = end) {
+        for (end = first + 1; end < edge.size() && edge[end].same_place(edge[first]); ++end)
+            ;
+        for (std::size_t i = first; end - first > 1 && i < end; ++i)
+            out.across[edge[i].triangle][edge[i].corner] =
+                edge[i + 1 < end ? i + 1 : first].triangle;
     }
-    out.first.push_back(static_cast<std::uint32_t>(out.triangle.size()));
     return out;
 }
 

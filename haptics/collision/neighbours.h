@@ -1,5 +1,5 @@
 // haptics/collision/neighbours.h
-// Which triangles lie around each one: those that share a vertex with it. Constant, made once.
+// Which triangle lies across each edge of each one. Constant, made once.
 #pragma once
 
 #include "haptics/collision/mesh_view.h"
@@ -9,11 +9,9 @@
 namespace haptics {
 
 struct Neighbours {
-    std::vector<std::uint32_t> first;    // of `triangle`, and one beyond the last
-    std::vector<std::uint32_t> triangle; // by number; without itself
-    std::span<const std::uint32_t> of(std::uint32_t t) const noexcept {
-        return {triangle.data() + first[t], first[t + 1] - first[t]};
-    }
+    /// By the corner opposite the edge; kNoSurface at a rim. Where more than two triangles share
+    /// an edge, the next of them by number, in a ring.
+    std::vector<std::array<std::uint32_t, 3>> across;
 };
 
 Neighbours make_neighbours(const MeshView& mesh);

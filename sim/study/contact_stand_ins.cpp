@@ -124,11 +124,12 @@ StandIn wing(std::uint64_t seed) {
     for (const double side : {-1.0, 1.0})
         for (const double face : {-0.5, 0.5})
             add_surface(mesh, 125, 79, [&](double u, double v) {
-                // from the root (u = 0) along rays; the outline has a notch between the two wings
+                // from the root (u = 0, 30 mm) along rays; the outline has a notch
                 const double ray = (v - 0.45) * 2.6;
                 const double length_m =
                     0.1 * (0.55 + 0.45 * std::cos(2.2 * ray)) * (1.0 - 0.05 * std::cos(30.0 * ray));
-                const double x = u * length_m * std::cos(ray), y = u * length_m * std::sin(ray);
+                const double x = u * length_m * std::cos(ray),
+                             y = 0.03 * (v - 0.5) + u * length_m * std::sin(ray);
                 const double vein = 1e-3 * std::sin(25.0 * ray + phase) * u;
                 const double z = 0.3 * x + 4e-3 * std::sin(60.0 * y + phase) + vein;
                 const double thick_m = 4e-4 * std::sqrt(std::max(0.0, 4.0 * u * (1.0 - u))) *

@@ -106,6 +106,26 @@ std::string finding_of(const HcollideStudy& study) {
                        good, all, page);
 }
 
+/// What the witness changes, method by method.
+std::string witness_of(const HcollideStudy& study) {
+    std::string page = "| mesh | method | average query, with / without | triangles | boxes |\n"
+                       "|---|---|---|---|---|\n";
+    for (const HcollideRow& r : study.row) {
+        HcollideRow like = r;
+        like.witness = false;
+        const HcollideRow* without = find(study, like, r.method);
+        if (!r.witness || r.deforming || !without)
+            continue;
+        page += fmt::format(
+            "| {} | {} | {:.2f} | {:.1f} instead of {:.1f} | {:.1f} instead of "
+            "{:.1f} |\n",
+            r.mesh, r.method, r.all.mean_us() / without->all.mean_us(),
+            per_query(r.counts.triangles, r), per_query(without->counts.triangles, *without),
+            per_query(r.counts.boxes, r), per_query(without->counts.boxes, *without));
+    }
+    return page;
+}
+
 void write_charts(const HcollideStudy& study, const std::filesystem::path& out) {
     for (const bool deforming : {false, true}) {
         std::vector<std::string> series;
@@ -150,9 +170,11 @@ void write_hcollide_study(const HcollideOptions& o, const HcollideStudy& study,
         "by 1 mm and is refitted between blocks.\n\n"
         "{} of all answers differ from the first method's.\n\nMachine: {}.\n\n"
         "## At rest\n\n{}\n![at rest](contact_rest.svg)\n\n## Deforming\n\n{}\n"
-        "![deforming](contact_deforming.svg)\n\n## Is the hybrid worth it?\n\n{}",
+        "![deforming](contact_deforming.svg)\n\n## Is the hybrid worth it?\n\n{}\n## Is the "
+        "witness?\n\nIt is measured before the "
+        "method is asked; triangles are those the method came up with. At rest:\n\n{}",
         o.queries, o.seed, o.rounds, study.clock_us, different, processor(), table_of(study, false),
-        table_of(study, true), finding_of(study));
+        table_of(study, true), finding_of(study), witness_of(study));
     write_text(out / "contact.csv", csv_of(study));
     write_text(out / "contact.md", page);
     write_charts(study, out);
