@@ -11,9 +11,9 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double kSide = 4.0;    // of a cell, in average edges: some tens of triangles
-constexpr std::size_t kMany = 8; // triangles that are worth a tree
-constexpr double kLong = 2.0;    // cells along any axis
+constexpr double kSide = 3.0;     // of a cell, in average edges
+constexpr std::size_t kMany = 16; // triangles from which on a tree is faster than their boxes
+constexpr double kLong = 2.0;     // cells along any axis
 constexpr double kMostAlong = 1 << 20;
 
 ItemBox joined(const ItemBox& a, const ItemBox& b) noexcept {
@@ -59,15 +59,6 @@ std::vector<Placed> place_triangles(const MeshView& mesh, double cell_m,
     return out;
 }
 
-/// Both ends of the interval.
-template <class Triangles>
-ItemBox box_of_all(const MeshView& mesh, const Triangles& triangles) noexcept {
-    ItemBox out = nothing();
-    for (const std::uint32_t t : triangles)
-        out = joined(out, box_of(mesh, t));
-    return out;
-}
-
 } // namespace
 
 Hybrid make_hybrid(const MeshView& mesh) {
@@ -83,9 +74,10 @@ Hybrid make_hybrid(const MeshView& mesh) {
         if (i + 1 < placed.size() && placed[i + 1].key == placed[i].key)
             continue;
         if (in.size() > kMany)
-            hybrid.cluster.push_back({.tree = make_obb_tree(mesh, in), .triangle = {}});
+            hybrid.cluster.push_back({.tree = make_obb_tree(mesh, in), .triangle = {}, .box = {}});
         else
-            hybrid.cluster.push_back({.tree = {}, .triangle = in});
+            hybrid.cluster.push_back(
+                {.tree = {}, .triangle = in, .box = std::vector<ItemBox>(in.size())});
         in.clear();
     }
     hybrid.box.resize(hybrid.cluster.size());
@@ -99,8 +91,14 @@ void refit(Hybrid& hybrid, const MeshView& mesh) noexcept {
     for (std::size_t c = 0; c < hybrid.cluster.size(); ++c) {
         Hybrid::Cluster& cluster = hybrid.cluster[c];
         refit(cluster.tree, mesh);
-        hybrid.box[c] =
-            joined(box_of_all(mesh, cluster.tree.triangle), box_of_all(mesh, cluster.triangle));
+        ItemBox all = nothing();
+        for (const std::uint32_t t : cluster.tree.triangle)
+            all = joined(all, box_of(mesh, t));
+        for (std::size_t i = 0; i < cluster.triangle.size(); ++i) {
+            cluster.box[i] = box_of(mesh, cluster.triangle[i]);
+            all = joined(all, cluster.box[i]);
+        }
+        hybrid.box[c] = all;
     }
     lay_out(hybrid.table, hybrid.box, hybrid.wanted_m);
     for (std::uint32_t c = 0; c < hybrid.box.size(); ++c) {

@@ -17,6 +17,7 @@ struct Hybrid {
     struct Cluster {
         ObbTree tree;                        // of many triangles; else empty
         std::vector<std::uint32_t> triangle; // of few; else empty
+        std::vector<ItemBox> box;            // of each of the few
     };
     double wanted_m = 0.0;
     std::vector<Cluster> cluster;
@@ -43,8 +44,11 @@ template <class Look> void visit(const Hybrid& hybrid, Reach& reach, Look&& look
                 continue;
             const Hybrid::Cluster& cluster = hybrid.cluster[e.item];
             visit(cluster.tree, reach, look);
-            for (const std::uint32_t t : cluster.triangle)
-                look(t);
+            for (std::size_t i = 0; i < cluster.triangle.size(); ++i) {
+                count_box(look);
+                if (near(cluster.box[i], reach, slack_m))
+                    look(cluster.triangle[i]);
+            }
         }
     });
     visit(hybrid.large, reach, look);
