@@ -41,7 +41,7 @@ bool fits(const CellTable& table, std::span<const ItemBox> box) noexcept {
             count *= r.high[k] - r.low[k] + 1;
         all += count;
     }
-    return all <= table.capacity;
+    return all <= static_cast<double>(table.entry.size());
 }
 
 /// By key, then by the order they came in.
@@ -57,10 +57,10 @@ void sort_bucket(std::span<Entry> all) noexcept {
 
 CellTable make_cell_table(std::size_t items) {
     CellTable table;
-    table.capacity = static_cast<std::uint32_t>(16 * items + 64);
-    table.entry.reserve(table.capacity);
-    table.unsorted.reserve(table.capacity);
-    table.cell.reserve(table.capacity + 1);
+    const std::size_t room = 16 * items + 64;
+    table.entry.resize(room);
+    table.unsorted.resize(room);
+    table.cell.resize(room + 1);
     table.bucket.resize(std::bit_ceil(4 * items + 2) + 1);
     return table;
 }
@@ -74,7 +74,7 @@ void lay_out(CellTable& table, std::span<const ItemBox> box, double wanted_m) no
         all.low_m = glm::min(all.low_m, b.low_m);
         all.high_m = glm::max(all.high_m, b.high_m);
     }
-    table.unsorted.clear();
+    table.entries = table.occupied = 0;
     table.cells = {};
     table.largest_m = 0.0;
     if (!listed(all))
@@ -104,34 +104,32 @@ CellRange cells_of(const CellTable& table, const ItemBox& box) noexcept {
 }
 
 void list_item(CellTable& table, const CellPlace& place, std::uint32_t item) noexcept {
-    table.unsorted.push_back({cell_key(place), item}); // reserved: see lay_out
+    table.unsorted[table.entries++] = {cell_key(place), item}; // there is room: see lay_out
 }
 
 void finish(CellTable& table) noexcept {
     std::fill(table.bucket.begin(), table.bucket.end(), 0u);
-    for (const Entry& e : table.unsorted)
-        ++table.bucket[hash_of(table, e.key) + 1];
+    for (std::uint32_t i = 0; i < table.entries; ++i)
+        ++table.bucket[hash_of(table, table.unsorted[i].key) + 1];
     for (std::size_t b = 1; b < table.bucket.size(); ++b)
         table.bucket[b] += table.bucket[b - 1];
-    table.entry.resize(table.unsorted.size());
-    for (std::size_t i = table.unsorted.size(); i-- > 0;) { // stable, and leaves no second array:
-        const Entry& e = table.unsorted[i];                 // ends become beginnings
+    for (std::uint32_t i = table.entries; i-- > 0;) { // backwards: ends become beginnings, in order
+        const Entry& e = table.unsorted[i];
         table.entry[--table.bucket[hash_of(table, e.key) + 1]] = e;
     }
-    // bucket[b + 1] is now where b begins; from here on it is the first cell of b
-    table.cell.clear();
+    // bucket[b + 1] is now where the entries of b begin; from here on bucket[b] is its first cell
     const std::size_t buckets = table.bucket.size() - 1;
     for (std::size_t b = 0; b < buckets; ++b) {
-        const std::size_t first = table.bucket[b + 1];
-        const std::size_t end = b + 2 <= buckets ? table.bucket[b + 2] : table.entry.size();
+        const std::uint32_t first = table.bucket[b + 1];
+        const std::uint32_t end = b + 2 <= buckets ? table.bucket[b + 2] : table.entries;
         sort_bucket(std::span(table.entry).subspan(first, end - first));
-        table.bucket[b] = static_cast<std::uint32_t>(table.cell.size());
-        for (std::size_t i = first; i < end; ++i)
+        table.bucket[b] = table.occupied;
+        for (std::uint32_t i = first; i < end; ++i)
             if (i == first || table.entry[i].key != table.entry[i - 1].key)
-                table.cell.push_back({table.entry[i].key, static_cast<std::uint32_t>(i)});
+                table.cell[table.occupied++] = {table.entry[i].key, i};
     }
-    table.bucket[buckets] = static_cast<std::uint32_t>(table.cell.size());
-    table.cell.push_back({0, static_cast<std::uint32_t>(table.entry.size())});
+    table.bucket[buckets] = table.occupied;
+    table.cell[table.occupied] = {0, table.entries};
 }
 
 } // namespace haptics

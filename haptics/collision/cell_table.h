@@ -28,20 +28,18 @@ struct CellTable {
         std::uint64_t key = 0;
         std::uint32_t first = 0; // of `entry`, up to the next cell's
     };
-    glm::dvec3 low_m{0.0};             // corner of cell 0, 0, 0
-    double cell_m = 1.0;               // side
-    double fat_m = 0.0;                // things are listed as if they were this much larger
-    CellPlace cells{};                 // how many along each axis, 0: nothing is listed
-    double largest_m = 0.0;            // coordinate of anything listed
+    glm::dvec3 low_m{0.0};  // corner of cell 0, 0, 0
+    double cell_m = 1.0;    // side
+    double fat_m = 0.0;     // things are listed as if they were this much larger
+    CellPlace cells{};      // how many along each axis, 0: nothing is listed
+    double largest_m = 0.0; // coordinate of anything listed
+    // All as large as they will ever be, so that a copy has the same room.
     std::vector<Cell> cell;            // the occupied ones by hash, each once, and one beyond
     std::vector<Entry> entry;          // in the order of the cells
     std::vector<std::uint32_t> bucket; // first cell of each hash value, and one beyond
     std::vector<Entry> unsorted;
-    std::uint32_t capacity = 0; // of entries
-
-    std::uint32_t occupied() const noexcept {
-        return cell.empty() ? 0 : static_cast<std::uint32_t>(cell.size() - 1);
-    }
+    std::uint32_t entries = 0;  // used of `entry` and `unsorted`
+    std::uint32_t occupied = 0; // used of `cell`, without the one beyond
 };
 
 struct ItemBox {
@@ -79,14 +77,14 @@ inline std::size_t hash_of(const CellTable& table, std::uint64_t key) noexcept {
     return (key * 0x9e3779b97f4a7c15u) >> 32 & (table.bucket.size() - 2); // a power of two, and 1
 }
 
-/// Number of a cell in the table; `occupied()` if nothing is in it.
+/// Number of a cell in the table; `occupied` if nothing is in it.
 inline std::uint32_t find_cell(const CellTable& table, const CellPlace& place) noexcept {
     const std::uint64_t key = cell_key(place);
     const std::size_t hash = hash_of(table, key);
     for (std::uint32_t c = table.bucket[hash]; c < table.bucket[hash + 1]; ++c)
         if (table.cell[c].key == key)
             return c;
-    return table.occupied();
+    return table.occupied;
 }
 
 inline std::span<const CellTable::Entry> items_of(const CellTable& table,

@@ -57,7 +57,7 @@ inline bool range_of(const CellTable& t, const Reach& reach, double radius_m,
 template <class Visit>
 void all_occupied(const CellTable& t, const Reach& reach, double slack, Visit& visit_cell) {
     CellRange r;
-    for (std::uint32_t c = 0; c < t.occupied(); ++c) {
+    for (std::uint32_t c = 0; c < t.occupied; ++c) {
         if (!range_of(t, reach, reach.radius_m + slack, r))
             return;
         const CellPlace p = place_of(t.cell[c].key);
@@ -70,7 +70,7 @@ void all_occupied(const CellTable& t, const Reach& reach, double slack, Visit& v
 }
 
 template <class Visit> void one(const CellTable& t, const CellPlace& p, Visit& visit_cell) {
-    if (const std::uint32_t c = find_cell(t, p); c != t.occupied())
+    if (const std::uint32_t c = find_cell(t, p); c != t.occupied)
         visit_cell(c);
 }
 
@@ -136,7 +136,7 @@ void shells(const CellTable& t, const Reach& reach, double slack, Visit& visit_c
         CellRange r;
         if (!range_of(t, reach, reach.radius_m + slack, r))
             return;
-        if (seen > t.occupied())
+        if (seen > t.occupied)
             return all_occupied(t, reach, slack, visit_cell);
         for (int k = 0; k < 3; ++k) {
             r.low[k] = std::max(r.low[k], middle[k] - s);
@@ -183,7 +183,7 @@ void layers(const CellTable& t, const Reach& reach, double slack, int axis, Visi
         const double enter = std::max(std::min(a, b), 0.0), leave = std::min(std::max(a, b), 1.0);
         if (enter > 1.0)
             return; // shortened
-        if (seen > t.occupied())
+        if (seen > t.occupied)
             return all_occupied(t, reach, slack, visit_cell);
         const glm::dvec3 p = reach.from_m + enter * d, q = reach.from_m + leave * d;
         CellPlace c{};
@@ -202,12 +202,12 @@ void layers(const CellTable& t, const Reach& reach, double slack, int axis, Visi
 
 /// Calls visit_cell(number) for the occupied cells that the reach meets, some more than once.
 template <class Visit> void walk_cells(const CellTable& t, const Reach& reach, Visit&& visit_cell) {
-    if (t.occupied() == 0 || !cell_walk::finite(reach))
+    if (t.occupied == 0 || !cell_walk::finite(reach))
         return;
     const double slack = cell_walk::slack_m(t.largest_m, reach);
     const glm::dvec3 d = glm::abs(reach.to_m - reach.from_m);
     if (reach.radius_m + slack <= 0.5 * t.fat_m) {
-        if ((d.x + d.y + d.z) / t.cell_m > t.occupied())
+        if ((d.x + d.y + d.z) / t.cell_m > t.occupied)
             return cell_walk::all_occupied(t, reach, slack, visit_cell);
         return cell_walk::thin(t, reach, visit_cell);
     }
