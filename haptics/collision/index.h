@@ -38,7 +38,8 @@ SweepHit sweep_sphere(const CollisionIndex& index, const MeshView& mesh, const g
 SweepHit sweep_shaft(const CollisionIndex& index, const MeshView& mesh,
                      const MovingSegment& segment, double radius_m) noexcept;
 /// Fills `found` with the nearest contacts within the margin, each triangle once, nearest first;
-/// returns how many there were, also those for which there was no room.
+/// returns how many there were, also those for which there was no room (of those, one that a method
+/// visits twice counts twice).
 std::size_t contacts_within(const CollisionIndex& index, const MeshView& mesh,
                             const glm::dvec3& place_m, double margin_m,
                             std::span<SurfaceHit> found) noexcept;

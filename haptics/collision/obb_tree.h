@@ -49,7 +49,7 @@ inline double distance2_m2(const ObbTree::Box& box, const glm::dvec3& place_m) n
 }
 
 /// Whether a segment may come as near to a box as `thick_m`: the separating axes of Gregory et al.
-/// 1999, 4.2, a box thicker by that. Exact for 0.
+/// 1999, a box thicker by that. Exact for 0.
 inline bool meets(const ObbTree::Box& box, const glm::dvec3& from_m, const glm::dvec3& to_m,
                   double thick_m) noexcept {
     const glm::dvec3 m = (0.5 * (from_m + to_m) - box.centre_m) * box.axes; // middle

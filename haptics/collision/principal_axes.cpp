@@ -14,7 +14,7 @@ using glm::dvec3;
 constexpr int kSweeps = 12; // converges quadratically: six are plenty
 
 /// Makes the element in row p, column q of a symmetric matrix zero by a turn, kept in `axes`
-/// (Jacobi's method; Golub, Van Loan, Matrix Computations, 8.5).
+/// (Jacobi's method; Golub, Van Loan, Matrix Computations).
 void turn(dmat3& m, dmat3& axes, int p, int q) {
     if (m[q][p] == 0.0)
         return;

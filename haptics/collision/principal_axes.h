@@ -14,7 +14,7 @@ struct SurfaceSpread {
 };
 
 /// Of the surface of some triangles, by the covariance of all its points (Gottschalk, Lin, Manocha
-/// 1996, OBBTree, 4); of triangles without area, of their corners.
+/// 1996, OBBTree); of triangles without area, of their corners.
 SurfaceSpread surface_spread(const MeshView& mesh, std::span<const std::uint32_t> triangle);
 
 } // namespace haptics

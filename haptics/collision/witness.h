@@ -1,6 +1,6 @@
 // haptics/collision/witness.h
 // The last answer as the first guess of the next, over any collision method (frame-to-frame
-// coherence; Gregory, Lin, Gottschalk, Taylor 1999, 4.3). The answers are those of queries.h: the
+// coherence; Gregory, Lin, Gottschalk, Taylor 1999). The answers are those of queries.h: the
 // guess only makes the reach smaller. Real-time safe.
 #pragma once
 
