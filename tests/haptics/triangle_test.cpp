@@ -186,9 +186,9 @@ TEST_CASE("triangle: the nearest points of triangle and segment, also nearly par
 }
 
 TEST_CASE("triangle: a swept ball or point touches never late, and early by the gap at most") {
-    CHECK(rc::check([] {
+    int hits = 0;
+    CHECK(rc::check([&hits] {
         Random random{std::mt19937_64(*rc::gen::arbitrary<std::uint32_t>())};
-        int hits = 0;
         for (int i = 0; i < 20; ++i) {
             const MovingTriangle t = any_motion(random, i % 2 ? 0.0 : random.power(-3.0, 0.0));
             const double radius = i % 4 < 2 ? 0.0 : random.power(-3.0, -0.5);
@@ -204,8 +204,8 @@ TEST_CASE("triangle: a swept ball or point touches never late, and early by the 
                 },
                 radius, 4.0, 80.0 * kEpsilon * 4.0);
         }
-        RC_ASSERT(hits > 2);
     }));
+    CHECK(hits > 100);
 }
 
 TEST_CASE("triangle: a swept capsule touches never late, and early by the gap at most") {
