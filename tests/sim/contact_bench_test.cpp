@@ -104,14 +104,20 @@ TEST_CASE("contact bench: a god-object holds on a sheet at rest and is lost on o
 TEST_CASE("contact bench: ours does no wrong, at rest and on what breathes") {
     for (const char* name : {"organ:1k", "sheet:1k"})
         for (const double amplitude_m : {0.0, 0.002, 0.005})
-            for (const sim::Wave wave : {sim::Wave::radial, sim::Wave::travelling}) {
-                CAPTURE(name);
-                CAPTURE(amplitude_m);
-                const auto b =
-                    run(sim::built_in_scene(name, 2.0, 1, 0.002, {amplitude_m, wave}), "ours");
-                CHECK(b.quality.contact_ticks > 500);
-                CHECK(b.quality.bad == 0);
-            }
+            for (const sim::Wave wave : {sim::Wave::radial, sim::Wave::travelling})
+                for (const double radius_m : {0.0, 0.0005, 0.002}) {
+                    CAPTURE(name);
+                    CAPTURE(amplitude_m);
+                    CAPTURE(radius_m);
+                    sim::ContactBenchOptions o;
+                    o.method = o.contact = "ours";
+                    o.radius_m = radius_m;
+                    const auto b = sim::run_contact_bench(
+                        sim::built_in_scene(name, 2.0, 7, radius_m, {amplitude_m, wave}), o);
+                    CHECK(b.quality.contact_ticks > 500);
+                    CHECK(b.quality.bad == 0);
+                    CHECK(b.quality.max_force_step_n < 0.5);
+                }
 }
 
 TEST_CASE("contact bench: the same run gives the same forces to the bit") {
