@@ -49,8 +49,7 @@ void look_around(const CollisionIndex& index, const MeshView& mesh, const dvec3&
     }
     out.reach_m = reach_m;
     out.count = static_cast<int>(std::min(found, out.near.size()));
-    for (int i = 0; i < out.count; ++i)
-        out.corner[i] = mesh.corners(out.near[i].triangle);
+    out.mesh = mesh;
 }
 
 void HoldingPlanes::add(std::uint32_t triangle, const TriangleCorners& corner,

@@ -15,7 +15,8 @@ struct Neighbourhood {
     int count = 0;
     double reach_m = 0.0; // from the centre; beyond it nothing is known
     std::array<NearTriangle, kRoom> near;
-    std::array<TriangleCorners, kRoom> corner;
+    MeshView mesh{};
+    TriangleCorners corner(int i) const noexcept { return mesh.corners(near[i].triangle); }
 };
 
 /// Those within `reach_m` of `centre_m`; if there are more than there is room for, fewer, and a

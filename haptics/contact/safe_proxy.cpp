@@ -53,24 +53,35 @@ dvec3 held_back(const Walk& walk, const HoldingPlanes& planes, const dvec3& cent
 HoldingPlanes touching(const Neighbourhood& around, const Walk& walk,
                        const dvec3& centre_m) noexcept {
     HoldingPlanes out;
-    const double rest_m = walk.in.radius_m + walk.hover_m;
-    int nearest = -1;
-    double nearest_m = rest_m + walk.longest_m;
+    if (around.count == 0)
+        return out;
+    const double rest_m = walk.in.radius_m + walk.hover_m, touching_m = rest_m + walk.hover_m;
+    const auto end = around.near.begin() + around.count;
+    const auto first = std::min_element(
+        around.near.begin(), end,
+        [](const NearTriangle& a, const NearTriangle& b) { return a.least_m < b.least_m; });
+    int nearest = static_cast<int>(first - around.near.begin());
+    TrianglePoint nearest_at = nearest_on_triangle(around.corner(nearest), centre_m);
+    double nearest_m = std::sqrt(nearest_at.distance2_m2);
+    if (nearest_m <= touching_m)
+        out.add(first->triangle, around.corner(nearest), nearest_at, centre_m, rest_m);
+    const int known = nearest;
     for (int i = 0; i < around.count; ++i) {
-        if (around.near[i].least_m > nearest_m)
+        if (around.near[i].least_m > std::max(nearest_m, touching_m) || i == known)
             continue;
-        const TrianglePoint at = nearest_on_triangle(around.corner[i], centre_m);
+        const TrianglePoint at = nearest_on_triangle(around.corner(i), centre_m);
         const double distance = std::sqrt(at.distance2_m2);
-        if (distance <= rest_m + walk.hover_m)
-            out.add(around.near[i].triangle, around.corner[i], at, centre_m, rest_m);
+        if (distance <= touching_m)
+            out.add(around.near[i].triangle, around.corner(i), at, centre_m, rest_m);
         if (distance < nearest_m) {
             nearest = i;
-            nearest_m = std::max(distance, rest_m + walk.hover_m);
+            nearest_at = at;
+            nearest_m = distance;
         }
     }
-    if (out.count == 0 && nearest >= 0)
-        out.add(around.near[nearest].triangle, around.corner[nearest],
-                nearest_on_triangle(around.corner[nearest], centre_m), centre_m, rest_m);
+    if (out.count == 0 && nearest_m <= rest_m + walk.longest_m)
+        out.add(around.near[nearest].triangle, around.corner(nearest), nearest_at, centre_m,
+                rest_m);
     return out;
 }
 
@@ -113,9 +124,10 @@ Met meets(const Neighbourhood& around, const Walk& walk, const HoldingPlanes& pl
     const double off_m = std::max(glm::length(from_m - looked_m), glm::length(to_m - looked_m));
     double deepest2_m2 = walk.touch_m * walk.touch_m;
     for (int i = 0; i < around.count; ++i) {
-        const TriangleCorners& corner = around.corner[i];
-        if (around.near[i].least_m > walk.touch_m + off_m ||
-            behind_a_plane(planes, corner, walk.touch_m))
+        if (around.near[i].least_m > walk.touch_m + off_m)
+            continue;
+        const TriangleCorners corner = around.corner(i);
+        if (behind_a_plane(planes, corner, walk.touch_m))
             continue;
         const TrianglePoint end = nearest_on_triangle(corner, to_m);
         if (parts(end, to_m, from_m, walk))
@@ -145,10 +157,10 @@ double free_part(const Neighbourhood& around, const Walk& walk, const HoldingPla
                  const dvec3& from_m, const dvec3& to_m) noexcept {
     double time = 1.0;
     for (int i = 0; i < around.count; ++i)
-        if (!behind_a_plane(planes, around.corner[i], walk.touch_m))
+        if (!behind_a_plane(planes, around.corner(i), walk.touch_m))
             time = std::min(
                 time,
-                sweep_ball({around.corner[i], around.corner[i]}, from_m, to_m, walk.touch_m).time);
+                sweep_ball({around.corner(i), around.corner(i)}, from_m, to_m, walk.touch_m).time);
     return time;
 }
 
@@ -177,7 +189,7 @@ Step step(const Neighbourhood& around, const Walk& walk, const dvec3& looked_m,
             return too_far ? Step::shortened : touch > 0 ? Step::turned : Step::arrived;
         }
         const int before = planes.count;
-        planes.add(around.near[met.index].triangle, around.corner[met.index], met.at, met.centre_m,
+        planes.add(around.near[met.index].triangle, around.corner(met.index), met.at, met.centre_m,
                    walk.in.radius_m + walk.hover_m);
         if (planes.count == before || touch == kMostTouches) { // as far as it is free
             centre_m += free_part(around, walk, planes, centre_m, to_m) * (to_m - centre_m);
@@ -219,7 +231,7 @@ void approach(const CollisionIndex& index, const MeshView& mesh, const ProxyInpu
     const double pull_m = glm::length(in.device_m - start_m);
     // as far as the device, and a little for what has piled up; in the air all the way
     const double guess_m = state.touching ? 1.25 * glm::length(in.device_m - state.device_m) +
-                                                0.25 * state.step_m + 0.005 * pull_m
+                                                0.25 * state.step_m + 0.002 * pull_m
                                           : pull_m;
     Walk walk{.in = in,
               .hover_m = state.hover_m,
@@ -240,9 +252,9 @@ void approach(const CollisionIndex& index, const MeshView& mesh, const ProxyInpu
     for (int i = 0; i < kMostSteps && most_m > 0.0; ++i) {
         walk.longest_m = std::min(walk.longest_m, most_m);
         const double gone_m = glm::length(state.proxy_m - looked_m);
-        if (gone_m + 0.25 * walk.longest_m > known_m) {
+        if (gone_m + 0.1 * walk.longest_m > known_m) {
             looked_m = state.proxy_m;
-            look_around(index, mesh, looked_m, least_m + 1.25 * walk.longest_m, least_m, state.ring,
+            look_around(index, mesh, looked_m, least_m + 1.1 * walk.longest_m, least_m, state.ring,
                         around);
             known_m = around.reach_m - least_m;
         }
