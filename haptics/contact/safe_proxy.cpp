@@ -21,33 +21,6 @@ struct Walk {
     bool slid;         // in the last tick
 };
 
-bool keeps(const HoldingPlanes& planes, const dvec3& place_m, double tolerance_m) noexcept {
-    for (int i = 0; i < planes.count; ++i)
-        if (!(glm::dot(planes.plane[i].normal, place_m) >= planes.plane[i].offset_m - tolerance_m))
-            return false;
-    return true;
-}
-
-// Coulomb in a proxy's terms: the way along the surface is the tangential force, from the device
-// to the place without friction the normal one, both over k (Ruspini et al. 1997). In a corner what
-// is left of the way might lead through a wall; then it is a part of the straight way.
-dvec3 held_back(const Walk& walk, const HoldingPlanes& planes, const dvec3& centre_m,
-                const dvec3& smooth_m, bool& sliding) noexcept {
-    const dvec3 normal_m = smooth_m - walk.in.device_m, way_m = smooth_m - centre_m;
-    const double push_m = glm::length(normal_m);
-    if (!(push_m > 0.0) || !(walk.in.static_friction > 0.0 || walk.in.dynamic_friction > 0.0))
-        return smooth_m;
-    const dvec3 n = normal_m / push_m;
-    const dvec3 out_m = glm::dot(way_m, n) * n, along_m = way_m - out_m;
-    const double along = glm::length(along_m), left = walk.in.dynamic_friction * push_m;
-    const double grip =
-        walk.slid || sliding ? left : std::max(walk.in.static_friction * push_m, left);
-    const double share = along <= grip ? 0.0 : 1.0 - left / along;
-    sliding = sliding || along > grip;
-    const dvec3 held_m = centre_m + out_m + share * along_m;
-    return keeps(planes, held_m, 0.25 * walk.hover_m) ? held_m : centre_m + share * way_m;
-}
-
 // Planes of what the ball touches where it is, and of the nearest triangle, which will most likely
 // hold it where it goes.
 HoldingPlanes touching(const Neighbourhood& around, const Walk& walk,
@@ -175,9 +148,12 @@ Step step(const Neighbourhood& around, const Walk& walk, const dvec3& looked_m,
         if (!nearest.feasible)
             return Step::blocked; // held from all sides
         bool slides = sliding;
-        const dvec3 wanted_m = nearest.actives > 0
-                                   ? held_back(walk, planes, centre_m, nearest.place_m, slides)
-                                   : nearest.place_m;
+        const Friction friction{walk.in.static_friction, walk.in.dynamic_friction, walk.slid};
+        const dvec3 wanted_m =
+            nearest.actives > 0
+                ? held_back(friction, std::span<const Plane>(planes.plane).first(planes.count),
+                            0.25 * walk.hover_m, walk.in.device_m, centre_m, nearest.place_m, slides)
+                : nearest.place_m;
         const double way_m = glm::length(wanted_m - centre_m);
         const bool too_far = way_m > walk.longest_m;
         const dvec3 to_m =

@@ -13,6 +13,7 @@
 #include "tests/haptics/mass_spring.h"
 #include "tests/haptics/proxy_bench.h"
 #include "tests/haptics/rigid_scenes.h"
+#include "tests/haptics/tool_bench.h"
 
 #include <atomic>
 #include <cstdlib>
@@ -181,4 +182,21 @@ TEST_CASE("no allocation: asking and refitting any collision method, also after 
         CHECK(allocations == before);
         CHECK(hits > 40);
     }
+}
+
+TEST_CASE("no allocation: two instruments on a mesh that moves, and on each other") {
+    tool_bench::Scene s = tool_bench::bumpy(1, 12, 0.04, 8e-3);
+    s.add({-0.06, 0, 0.035}, {0.03, 0, 0.03}, 3e-3, 1e-3);
+    s.add({0, -0.06, 0.05}, {0, 0.03, 0.05}, 3e-3, 1e-3);
+    s.before = s.vertex;
+    const int before = allocations;
+    int touched = 0;
+    for (int i = 0; i < 300; ++i) {
+        s.in[0].device_m.z -= 1e-4;
+        s.in[1].device_m.z -= 2e-4;
+        s.step();
+        touched += s.tool(0).touching + s.tool(1).touching;
+    }
+    CHECK(allocations == before);
+    CHECK(touched > 100);
 }
