@@ -27,6 +27,7 @@
 #include "haptics/collision/index.h"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
@@ -71,6 +72,7 @@ struct ToolState {
     std::array<ToolTouch, kMostToolContacts> contact{};
     // how far it came in the last tick, how far off a surface it rests, where the device was
     double step_m = 0.0, hover_m = 0.0;
+    double room_m = HUGE_VAL; // this far around there was room for all that it may meet
     glm::dvec3 device_m{0.0};
     ToolShape shape;
 };

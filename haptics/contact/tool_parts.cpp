@@ -13,22 +13,29 @@ double farthest(const dvec3& n, const TriangleCorners& c) noexcept {
     return std::max({glm::dot(n, c[0]), glm::dot(n, c[1]), glm::dot(n, c[2])});
 }
 
+Between between(const ToolShape& shape, ToolPart part, const dvec3& tip_m,
+                const Obstacle& obstacle) noexcept {
+    if (!has(shape, part))
+        return {HUGE_VAL, dvec3{0.0}, HUGE_VAL};
+    const SegmentPair pair = part_to_triangle(shape, part, tip_m, obstacle.corner);
+    const double distance = std::sqrt(pair.on_triangle.distance2_m2);
+    const dvec3 n = distance > 0.0 ? (pair.place_m - pair.on_triangle.place_m) / distance
+                                   : dvec3{0.0, 0.0, 1.0};
+    return {distance - radius_of(shape, part) - obstacle.grown_m, n,
+            farthest(n, obstacle.corner) + obstacle.grown_m};
+}
+
 // Adds an obstacle if it comes near enough. False: there is no room.
 bool take(const ToolShape& shape, const dvec3& tip_m, const Obstacle& obstacle, double beyond_m,
           Surroundings& out) noexcept {
-    std::array<double, 2> gap_m{HUGE_VAL, HUGE_VAL};
-    for (const ToolPart part : kToolParts)
-        if (has(shape, part))
-            gap_m[static_cast<std::size_t>(part)] =
-                std::sqrt(part_to_triangle(shape, part, tip_m, obstacle.corner)
-                              .on_triangle.distance2_m2) -
-                radius_of(shape, part) - obstacle.grown_m;
-    if (!(std::min(gap_m[0], gap_m[1]) <= beyond_m))
+    const std::array now{between(shape, ToolPart::tip, tip_m, obstacle),
+                         between(shape, ToolPart::shaft, tip_m, obstacle)};
+    if (!(std::min(now[0].gap_m, now[1].gap_m) <= beyond_m))
         return true;
     if (out.count == Surroundings::kRoom)
         return false;
     out.near[out.count] = obstacle;
-    out.gap_m[out.count++] = gap_m;
+    out.between[out.count++] = now;
     return true;
 }
 
@@ -45,8 +52,10 @@ bool gather(const CollisionIndex& index, const MeshView& mesh, const OtherTools&
         [&](const auto& method) {
             visit(method, reach, [&](std::uint32_t t) {
                 const TriangleCorners corner = mesh.corners(t);
-                if (!surely_far(shape, tip_m, corner, reach_m))
-                    room = take(shape, tip_m, {corner, 0.0, t, -1}, beyond_m, out) && room;
+                if (room && !surely_far(shape, tip_m, corner, reach_m))
+                    room = take(shape, tip_m, {corner, 0.0, t, -1}, beyond_m, out);
+                if (!room)
+                    reach.radius_m = 0.0; // no more of this
             });
         },
         index);
@@ -106,7 +115,7 @@ void look_around(const CollisionIndex& index, const MeshView& mesh, const OtherT
     for (int attempt = 0; attempt < 12; ++attempt) {
         if (gather(index, mesh, others, shape, tip_m, beyond_m, out) || beyond_m <= least_m)
             break;
-        beyond_m = std::max(least_m, attempt < 10 ? 0.5 * (beyond_m + least_m) : least_m);
+        beyond_m = std::max(least_m, attempt < 10 ? 0.6 * beyond_m : least_m);
     }
     out.tip_m = tip_m;
     out.beyond_m = beyond_m;

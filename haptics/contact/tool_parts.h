@@ -50,14 +50,25 @@ TriangleSweep sweep_part(const ToolShape& shape, ToolPart part, const MovingTria
 bool surely_far(const ToolShape& shape, const glm::dvec3& tip_m, const TriangleCorners& corner,
                 double reach_m) noexcept;
 
+/// A direction that keeps a part and an obstacle apart, where it was looked.
+struct Between {
+    double gap_m; // of their surfaces
+    glm::dvec3 normal;
+    double front_m; // the obstacle's surface along it
+};
+
 /// What a tool may meet while its tip is within some way of where it is.
 struct Surroundings {
-    static constexpr int kRoom = 512;
+    static constexpr int kRoom = 384;
     int count = 0;
     glm::dvec3 tip_m; // where it was looked from
     double beyond_m;  // known this far from each part's surface
     std::array<Obstacle, kRoom> near;
-    std::array<std::array<double, 2>, kRoom> gap_m; // to each part's surface
+    std::array<std::array<Between, 2>, kRoom> between; // it and each part
+
+    const Between& of(int i, ToolPart part) const noexcept {
+        return between[i][static_cast<std::size_t>(part)];
+    }
 };
 
 /// Those within `beyond_m`; if there are more than there is room for, fewer and a shorter way, but

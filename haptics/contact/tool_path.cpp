@@ -31,8 +31,7 @@ ToolPlanes touching(const Walk& walk, const dvec3& tip_m) noexcept {
     const ToolShape& shape = walk.in.shape;
     for (int i = 0; i < walk.around.count; ++i)
         for (const ToolPart part : kToolParts) {
-            if (!has(shape, part) ||
-                walk.around.gap_m[i][static_cast<std::size_t>(part)] > 2.0 * walk.hover_m + gone_m)
+            if (!has(shape, part) || walk.around.of(i, part).gap_m > 2.0 * walk.hover_m + gone_m)
                 continue;
             const Obstacle& near = walk.around.near[i];
             const SegmentPair pair = part_to_triangle(shape, part, tip_m, near.corner);
@@ -87,12 +86,24 @@ FirstTouch first_touch(const Walk& walk, const ToolPlanes& planes, const dvec3& 
         for (const ToolPart part : kToolParts) {
             const Obstacle& near = around.near[i];
             const double touch_m = walk.rest_m(part, near) - 0.5 * walk.hover_m;
-            if (around.gap_m[i][static_cast<std::size_t>(part)] > walk.hover_m + off_m ||
+            const Between& then = around.of(i, part);
+            if (then.gap_m > walk.hover_m + off_m || !(first.sweep.time > 0.0))
+                continue;
+            const double front_m =
+                std::min({glm::dot(then.normal, from_m), glm::dot(then.normal, to_m),
+                          part == ToolPart::shaft ? glm::dot(then.normal, walk.in.shape.pivot_m)
+                                                  : HUGE_VAL});
+            if (then.front_m - near.grown_m + touch_m <= front_m ||
                 fronts.keep(part, near.corner, touch_m))
                 continue;
-            const TriangleSweep sweep =
-                sweep_part(walk.in.shape, part, {near.corner, near.corner}, from_m, to_m, touch_m);
-            if (sweep.hit() && sweep.time < first.sweep.time)
+            // no farther than the first so far
+            const double share = std::min(first.sweep.time, 1.0);
+            TriangleSweep sweep = sweep_part(walk.in.shape, part, {near.corner, near.corner},
+                                             from_m, from_m + share * (to_m - from_m), touch_m);
+            if (!sweep.hit())
+                continue;
+            sweep.time *= share;
+            if (sweep.time < first.sweep.time)
                 first = {i, part, sweep};
         }
     return first;
@@ -193,8 +204,11 @@ void approach(const CollisionIndex& index, const MeshView& mesh, const OtherTool
     for (int i = 0; i < kMostSteps && most_m > 0.0; ++i) {
         wanted_m = std::min(wanted_m, most_m);
         if (known_m < 0.0 || glm::length(state.tip_m - around.tip_m) + 0.5 * wanted_m > known_m) {
-            look_around(index, mesh, others, in.shape, state.tip_m, least_m + 2.0 * wanted_m,
-                        least_m, around);
+            const double beyond_m = std::min(least_m + 2.0 * wanted_m, 1.5 * state.room_m);
+            look_around(index, mesh, others, in.shape, state.tip_m, beyond_m, least_m, around);
+            state.room_m =
+                std::max({around.beyond_m, least_m + 2.0 * walk.hover_m,
+                          around.count < Surroundings::kRoom / 2 ? 2.0 * beyond_m : 0.0});
             known_m = around.beyond_m - least_m;
         }
         walk.longest_m = std::min(wanted_m, known_m - glm::length(state.tip_m - around.tip_m));
