@@ -13,10 +13,33 @@ double farthest(const dvec3& n, const TriangleCorners& c) noexcept {
     return std::max({glm::dot(n, c[0]), glm::dot(n, c[1]), glm::dot(n, c[2])});
 }
 
-Between between(const ToolShape& shape, ToolPart part, const dvec3& tip_m,
-                const Obstacle& obstacle) noexcept {
+// By the direction from the triangle's middle: nearer than this they are not, and cheap.
+Between at_a_glance(const ToolShape& shape, ToolPart part, const dvec3& tip_m,
+                    const Obstacle& obstacle) noexcept {
+    const TriangleCorners& c = obstacle.corner;
+    const dvec3 middle_m = (c[0] + c[1] + c[2]) / 3.0;
+    const dvec3 axis = part == ToolPart::shaft ? shape.pivot_m - tip_m : dvec3{0.0};
+    const double length2 = glm::dot(axis, axis);
+    const double along =
+        length2 > 0.0 ? std::clamp(glm::dot(middle_m - tip_m, axis) / length2, 0.0, 1.0) : 0.0;
+    const dvec3 away = tip_m + along * axis - middle_m;
+    const double length = glm::length(away);
+    if (!(length > 0.0))
+        return {-HUGE_VAL, dvec3{0.0, 0.0, 1.0}, HUGE_VAL};
+    const dvec3 n = away / length;
+    const double front_m = farthest(n, c) + obstacle.grown_m;
+    const double tip = glm::dot(n, tip_m);
+    return {std::min(tip, tip + glm::dot(n, axis)) - radius_of(shape, part) - front_m, n, front_m};
+}
+
+// Exact if they are near for a way of `beyond_m`.
+Between between(const ToolShape& shape, ToolPart part, const dvec3& tip_m, const Obstacle& obstacle,
+                double beyond_m) noexcept {
     if (!has(shape, part))
         return {HUGE_VAL, dvec3{0.0}, HUGE_VAL};
+    const Between guess = at_a_glance(shape, part, tip_m, obstacle);
+    if (guess.gap_m > 0.25 * beyond_m)
+        return guess;
     const SegmentPair pair = part_to_triangle(shape, part, tip_m, obstacle.corner);
     const double distance = std::sqrt(pair.on_triangle.distance2_m2);
     const dvec3 n = distance > 0.0 ? (pair.place_m - pair.on_triangle.place_m) / distance
@@ -28,8 +51,8 @@ Between between(const ToolShape& shape, ToolPart part, const dvec3& tip_m,
 // Adds an obstacle if it comes near enough. False: there is no room.
 bool take(const ToolShape& shape, const dvec3& tip_m, const Obstacle& obstacle, double beyond_m,
           Surroundings& out) noexcept {
-    const std::array now{between(shape, ToolPart::tip, tip_m, obstacle),
-                         between(shape, ToolPart::shaft, tip_m, obstacle)};
+    const std::array now{between(shape, ToolPart::tip, tip_m, obstacle, beyond_m),
+                         between(shape, ToolPart::shaft, tip_m, obstacle, beyond_m)};
     if (!(std::min(now[0].gap_m, now[1].gap_m) <= beyond_m))
         return true;
     if (out.count == Surroundings::kRoom)

@@ -52,7 +52,7 @@ bool surely_far(const ToolShape& shape, const glm::dvec3& tip_m, const TriangleC
 
 /// A direction that keeps a part and an obstacle apart, where it was looked.
 struct Between {
-    double gap_m; // of their surfaces
+    double gap_m; // of their surfaces, at least
     glm::dvec3 normal;
     double front_m; // the obstacle's surface along it
 };

@@ -204,7 +204,7 @@ void approach(const CollisionIndex& index, const MeshView& mesh, const OtherTool
     for (int i = 0; i < kMostSteps && most_m > 0.0; ++i) {
         wanted_m = std::min(wanted_m, most_m);
         if (known_m < 0.0 || glm::length(state.tip_m - around.tip_m) + 0.5 * wanted_m > known_m) {
-            const double beyond_m = std::min(least_m + 2.0 * wanted_m, 1.5 * state.room_m);
+            const double beyond_m = std::min(least_m + 1.2 * wanted_m, 1.5 * state.room_m);
             look_around(index, mesh, others, in.shape, state.tip_m, beyond_m, least_m, around);
             state.room_m =
                 std::max({around.beyond_m, least_m + 2.0 * walk.hover_m,
