@@ -18,6 +18,9 @@
 // stiffness k / lever^2 there, give the mean weighted by stiffness. The tool that gives way goes
 // first, to there, the other follows. With more contacts than one this is one pass of
 // Gauss-Seidel in a tick, from the forces of the last.
+// The mesh moves one tool at a time as well: a tool that it squeezes against another, which stands
+// still in that tick, goes where it is least in the way, and may be passed there. Nothing gives
+// way at a pivot: tissue that comes at a shaft nearer to it than a tenth may get in.
 //
 // Of a contact at `lever` the tip feels lever times the force (virtual work). Friction acts in the
 // tip's space: across the shaft that is Coulomb's cone, along it, by 1 / lever inside it.

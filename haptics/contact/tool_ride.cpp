@@ -264,7 +264,10 @@ void ride_along(const CollisionIndex& index, const MeshView& mesh, const OtherTo
             time.to = std::min(1.0, time.from + part);
             passage = crossing.pass(time, state.tip_m, ride.at(time.to));
         }
-        state.tip_m = passage.end_m; // if it is squeezed even so: where that is least
+        // if it is squeezed even so: where that is least, but not where nothing is known
+        const dvec3 way_m = passage.end_m - before.tip_m;
+        const double far_m = glm::length(way_m);
+        state.tip_m = far_m > stray_m ? before.tip_m + stray_m / far_m * way_m : passage.end_m;
     }
 }
 
