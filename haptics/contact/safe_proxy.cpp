@@ -152,7 +152,8 @@ Step step(const Neighbourhood& around, const Walk& walk, const dvec3& looked_m,
         const dvec3 wanted_m =
             nearest.actives > 0
                 ? held_back(friction, std::span<const Plane>(planes.plane).first(planes.count),
-                            0.25 * walk.hover_m, walk.in.device_m, centre_m, nearest.place_m, slides)
+                            0.25 * walk.hover_m, walk.in.device_m, centre_m, nearest.place_m,
+                            slides)
                 : nearest.place_m;
         const double way_m = glm::length(wanted_m - centre_m);
         const bool too_far = way_m > walk.longest_m;

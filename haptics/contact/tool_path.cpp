@@ -132,9 +132,11 @@ Step step(Walk& walk, ToolPlanes& planes, dvec3& tip_m) noexcept {
             return Step::blocked; // held from all sides
         bool slides = walk.sliding;
         const Friction friction{walk.in.static_friction, walk.in.dynamic_friction, walk.slid};
-        const dvec3 wanted_m = nearest.actives > 0 ? held_back(friction, walk.in.device_m, tip_m,
-                                                               nearest.place_m, slides)
-                                                   : nearest.place_m;
+        const dvec3 wanted_m =
+            nearest.actives > 0
+                ? held_back(friction, std::span<const Plane>(planes.plane).first(planes.count),
+                            0.25 * walk.hover_m, walk.in.device_m, tip_m, nearest.place_m, slides)
+                : nearest.place_m;
         const double way_m = glm::length(wanted_m - tip_m);
         const bool too_far = way_m > walk.longest_m;
         const dvec3 to_m = too_far ? tip_m + walk.longest_m / way_m * (wanted_m - tip_m) : wanted_m;
