@@ -181,6 +181,7 @@ WideTree make_wide_tree(const MeshView& mesh) {
 
 void refit(WideTree& tree, const MeshView& mesh) noexcept {
     tree.version = next_version();
+    tree.moving = !mesh.before_m.empty();
     if (tree.node.empty())
         return;
     fill_places(tree, mesh.vertex_m);
@@ -219,26 +220,55 @@ TreeReach make_reach(const WideTree& tree, const Reach& reach) noexcept {
     return out;
 }
 
-std::uint32_t lanes_met(const WideTree::Node& node, const TreeReach& reach) noexcept {
-    std::uint32_t met = 0;
-    for (int lane = 0; lane < WideTree::kWidth; ++lane) {
-        float in = 0.0f, out = 1.0f, distance2 = 0.0f;
-        for (int axis = 0; axis < 3; ++axis) {
-            const float low = node.low[axis][lane] - reach.from[axis];
-            const float high = node.high[axis][lane] - reach.from[axis];
-            const float off = std::max({low, -high, 0.0f});
-            distance2 += off * off;
-            const float a = (low - reach.radius) * reach.inverse[axis];
-            const float b = (high + reach.radius) * reach.inverse[axis];
-            in = std::max(in, std::min(a, b));
-            out = std::min(out, std::max(a, b));
+namespace {
+
+// Eight boxes against a reach. The order of the loops lets the compiler take lanes side by side.
+std::uint32_t boxes_met(const float (&low)[3][kWidth], const float (&high)[3][kWidth],
+                        const TreeReach& reach, std::array<float, kWidth>& order) noexcept {
+    std::array<float, kWidth> in{}, out, distance2{};
+    out.fill(1.0f);
+    for (int axis = 0; axis < 3; ++axis)
+        for (int lane = 0; lane < kWidth; ++lane) {
+            const float l = low[axis][lane] - reach.from[axis];
+            const float h = high[axis][lane] - reach.from[axis];
+            const float off = std::max(std::max(l, -h), 0.0f);
+            distance2[lane] += off * off;
+            const float a = (l - reach.radius) * reach.inverse[axis];
+            const float b = (h + reach.radius) * reach.inverse[axis];
+            in[lane] = std::max(in[lane], std::min(a, b));
+            out[lane] = std::min(out[lane], std::max(a, b));
         }
-        const bool there = node.child[lane] != WideTree::kNothing;
-        const bool hit = reach.point ? distance2 <= reach.radius * reach.radius
-                                     : in <= out * (1.0f + 1e-5f) + 1e-6f;
-        met |= static_cast<std::uint32_t>(there && hit) << lane;
+    std::uint32_t met = 0;
+    for (int lane = 0; lane < kWidth; ++lane) {
+        const bool hit = reach.point ? distance2[lane] <= reach.radius * reach.radius
+                                     : in[lane] <= out[lane] * (1.0f + 1e-5f) + 1e-6f;
+        met |= static_cast<std::uint32_t>(hit) << lane;
+        order[lane] = reach.point ? distance2[lane] : in[lane];
     }
     return met;
+}
+
+} // namespace
+
+std::uint32_t children_met(const WideTree::Node& node, const TreeReach& reach,
+                           std::array<float, kWidth>& order) noexcept {
+    std::uint32_t there = 0;
+    for (int lane = 0; lane < kWidth; ++lane)
+        there |= static_cast<std::uint32_t>(node.child[lane] != WideTree::kNothing) << lane;
+    return boxes_met(node.low, node.high, reach, order) & there;
+}
+
+std::uint32_t triangles_met(const WideTree::Leaf& leaf, const TreeReach& reach) noexcept {
+    float low[3][kWidth], high[3][kWidth];
+    for (int axis = 0; axis < 3; ++axis)
+        for (int lane = 0; lane < kWidth; ++lane) {
+            const float a = leaf.corner[0][axis][lane], b = leaf.corner[1][axis][lane],
+                        c = leaf.corner[2][axis][lane];
+            low[axis][lane] = std::min(std::min(a, b), c);
+            high[axis][lane] = std::max(std::max(a, b), c);
+        }
+    std::array<float, kWidth> order;
+    return boxes_met(low, high, reach, order);
 }
 
 } // namespace wide_detail

@@ -67,6 +67,7 @@ struct WideTree {
     glm::dvec3 origin_m{0.0};
     double scale_pm = 1.0;
     std::uint64_t version = 0; // of the last refit; unlike that of any other tree
+    bool moving = false;       // boxes cover where the mesh was as well
 
     glm::dvec3 to_tree(const glm::dvec3& place_m) const noexcept {
         return (place_m - origin_m) * scale_pm;
@@ -137,7 +138,11 @@ struct TreeReach {
     bool point = true;
 };
 TreeReach make_reach(const WideTree& tree, const Reach& reach) noexcept;
-std::uint32_t lanes_met(const WideTree::Node& node, const TreeReach& reach) noexcept;
+/// `order`: how early each is met.
+std::uint32_t children_met(const WideTree::Node& node, const TreeReach& reach,
+                           std::array<float, WideTree::kWidth>& order) noexcept;
+/// Of a leaf's triangles as they are now, by their boxes.
+std::uint32_t triangles_met(const WideTree::Leaf& leaf, const TreeReach& reach) noexcept;
 inline constexpr int kMostDepth = 24; // 8^11 triangles and more
 } // namespace wide_detail
 
@@ -152,15 +157,34 @@ template <class Look> void visit(const WideTree& tree, Reach& reach, Look&& look
     while (top > 0) {
         const std::uint32_t at = stack[--top];
         if ((at & WideTree::kLeafBit) != 0) {
-            for (const std::uint32_t t : tree.member[at & ~WideTree::kLeafBit].triangle)
+            const std::uint32_t leaf = at & ~WideTree::kLeafBit;
+            // boxes of leaves cover both ends of a motion, triangles know one
+            std::uint32_t met = tree.moving ? (1u << WideTree::kWidth) - 1u
+                                            : wide_detail::triangles_met(tree.leaf[leaf], now);
+            for (; met != 0; met &= met - 1) {
+                const std::uint32_t t = tree.member[leaf].triangle[std::countr_zero(met)];
                 if (t != WideTree::kNothing)
                     look(t);
+            }
             now = wide_detail::make_reach(tree, reach);
             continue;
         }
         const WideTree::Node& node = tree.node[at];
-        for (std::uint32_t met = wide_detail::lanes_met(node, now); met != 0; met &= met - 1)
-            stack[top++] = node.child[std::countr_zero(met)];
+        std::array<float, WideTree::kWidth> order;
+        std::array<float, WideTree::kWidth>
+            pushed; // the latest first, so that the earliest is next
+        const int first = top;
+        for (std::uint32_t met = wide_detail::children_met(node, now, order); met != 0;
+             met &= met - 1) {
+            const int lane = std::countr_zero(met);
+            int to = top++;
+            for (; to > first && pushed[to - first - 1] < order[lane]; --to) {
+                stack[to] = stack[to - 1];
+                pushed[to - first] = pushed[to - first - 1];
+            }
+            stack[to] = node.child[lane];
+            pushed[to - first] = order[lane];
+        }
     }
 }
 
