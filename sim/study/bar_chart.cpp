@@ -11,6 +11,7 @@ namespace {
 // Told apart with any colour vision (Okabe, Ito 2008).
 constexpr std::array<const char*, 8> kColour{"#0072b2", "#56b4e9", "#d55e00", "#e69f00",
                                              "#009e73", "#8fd9c0", "#333333", "#999999"};
+constexpr double kName = 170.0; // of a series, in the legend
 constexpr double kLeft = 60.0, kTop = 40.0, kHeight = 260.0, kBar = 17.0, kBetween = 34.0;
 
 std::string text(double x, double y, const char* anchor, const std::string& what) {
@@ -39,7 +40,8 @@ std::string bar_chart_svg(const std::string& title, const std::string& axis,
     const double group_width = kBar * static_cast<double>(series.size()) + kBetween;
     const double width = group_width * static_cast<double>(groups.size());
     const double bottom = kTop + kHeight, legend = bottom + 50.0;
-    const double rows = std::ceil(static_cast<double>(series.size()) / 4.0);
+    const auto names = static_cast<std::size_t>(std::max(1.0, std::floor(width / kName)));
+    const double rows = std::ceil(static_cast<double>(series.size()) / static_cast<double>(names));
     std::string svg = fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
         "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\" font-size=\"12\">\n"
@@ -65,8 +67,8 @@ std::string bar_chart_svg(const std::string& title, const std::string& axis,
         svg += text(left + 0.5 * (group_width - kBetween), bottom + 18.0, "middle", groups[g].name);
     }
     for (std::size_t s = 0; s < series.size(); ++s) {
-        const double x = kLeft + 170.0 * static_cast<double>(s % 4),
-                     y = legend + 20.0 * static_cast<double>(s / 4);
+        const double x = kLeft + kName * static_cast<double>(s % names),
+                     y = legend + 20.0 * static_cast<double>(s / names);
         svg += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"11\" height=\"11\" "
                            "fill=\"{}\"/>\n",
                            x, y - 10.0, kColour[s % kColour.size()]);
