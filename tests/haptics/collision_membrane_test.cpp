@@ -1,5 +1,6 @@
 #include "haptics/collision/index.h"
 #include "tests/haptics/collision_meshes.h"
+#include "tests/haptics/effort.h"
 
 #include <cmath>
 #include <doctest/doctest.h>
@@ -28,7 +29,7 @@ double height_of(const CollisionMesh& mesh, double x, double y) { // upper face,
 
 int missed_crossings(std::string_view name, double membrane_mps, double radius_m) {
     constexpr double kTick_s = 1e-3;
-    constexpr int kTicks = 20, kTogether = 1000, kWindows = 10; // 10^4 crossings
+    constexpr int kTicks = 20, kTogether = effort::cases(1000), kWindows = 10; // 10^4 crossings
     CollisionRandom random{std::mt19937_64(29)};
     CollisionMesh flat;
     add_sheet(flat, 14, 0.0);

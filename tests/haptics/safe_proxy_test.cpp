@@ -1,5 +1,6 @@
 #include "haptics/contact/safe_proxy.h"
 
+#include "tests/haptics/effort.h"
 #include "tests/haptics/proxy_bench.h"
 
 #include <doctest/doctest.h>
@@ -107,7 +108,7 @@ TEST_CASE("safe proxy: 10^4 crossings of a membrane at up to 2 m/s pass none") {
         const std::vector<dvec3> rest = b.vertex;
         std::vector<dvec3> before;
         int passed = 0;
-        for (int crossing = 0; crossing < 5000; ++crossing) {
+        for (int crossing = 0; crossing < effort::cases(5000); ++crossing) {
             const double speed_mps = 1.0 + u(engine) * 0.99;
             const dvec3 way =
                 glm::normalize(dvec3{u(engine), u(engine), -0.3 - std::abs(u(engine))});

@@ -1,3 +1,4 @@
+#include "tests/haptics/effort.h"
 #include "tests/haptics/tool_bench.h"
 
 #include <doctest/doctest.h>
@@ -95,7 +96,7 @@ TEST_CASE("safe tools: a shaft does not pass a membrane in ten thousand crossing
     Wander random{std::mt19937_64(9), dvec3{0.0}, dvec3{0.0}, dvec3{0.0}};
     s.step();
     int passed = 0, below = 0;
-    for (int i = 0; i < 10000; ++i) {
+    for (int i = 0; i < effort::cases(10000); ++i) {
         // from anywhere to anywhere on the other side, in one tick
         s.in[0].device_m = {random.between(-0.05, 0.1), random.between(-0.1, 0.1),
                             (i % 2 ? 1.0 : -1.0) * random.between(0.0, 0.05)};
@@ -104,7 +105,7 @@ TEST_CASE("safe tools: a shaft does not pass a membrane in ten thousand crossing
         below += s.tool(0).touching;
     }
     CHECK(passed == 0);
-    CHECK(below > 4000);
+    CHECK(below > effort::cases(4000));
 }
 
 TEST_CASE("safe tools: crossed shafts pressed together rest with forces equal and opposite") {
@@ -134,7 +135,7 @@ TEST_CASE("safe tools: shafts pressed together never pass through each other") {
         Wander b{std::mt19937_64(11), {-0.03, 0.06, -0.04}, {0.03, 0.09, 0.02}, {0, 0.08, 0.01}};
         double least_m = HUGE_VAL;
         int pressed = 0;
-        for (int i = 0; i < 10000; ++i) {
+        for (int i = 0; i < effort::cases(10000); ++i) {
             s.in[0].device_m = a.next();
             s.in[1].device_m = b.next();
             s.step();
@@ -142,7 +143,7 @@ TEST_CASE("safe tools: shafts pressed together never pass through each other") {
             pressed += s.tool(0).touching && s.tool(1).touching;
         }
         CHECK(least_m > 0.0);
-        CHECK(pressed > 1000);
+        CHECK(pressed > effort::cases(1000));
     }
 }
 

@@ -1,5 +1,7 @@
 #include "haptics/collision/triangle.h"
 
+#include "tests/haptics/effort.h"
+
 #include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
@@ -230,7 +232,7 @@ TEST_CASE("triangle: a swept capsule touches never late, and early by the gap at
 
 TEST_CASE("triangle: a point aimed at a face, an edge or a corner hits, at rest and moving") {
     Random random{std::mt19937_64(3)};
-    for (int i = 0; i < 100000; ++i) {
+    for (int i = 0; i < effort::cases(100000); ++i) {
         MovingTriangle t = any_motion(random, i % 2 ? 0.0 : 0.3);
         if (i % 3 == 0)
             for (int k = 0; k < 3; ++k)
