@@ -4,6 +4,7 @@
 #include "haptics/collision/witness.h"
 #include "haptics/contact/god_object.h"
 #include "haptics/contact/penalty.h"
+#include "haptics/contact/safe_proxy.h"
 #include "haptics/contact/virtual_proxy.h"
 #include "haptics/device/trocar.h"
 #include "haptics/device/virtual_device.h"
@@ -104,10 +105,11 @@ TEST_CASE("no allocation: from device sample to limited force") {
     CHECK(device.handle_m().x != 0.0);
 }
 
-TEST_CASE("no allocation: the classical contact methods on a ball of many faces") {
-    for (auto* step :
-         {haptics::step_penalty, haptics::step_god_object, haptics::step_virtual_proxy}) {
+TEST_CASE("no allocation: every contact method for a ball, on one of many faces") {
+    for (auto* step : {haptics::step_penalty, haptics::step_god_object, haptics::step_virtual_proxy,
+                       haptics::step_safe_proxy}) {
         proxy_bench::Bench b = proxy_bench::crumpled_ball(1);
+        b.index = haptics::make_index("ours", b.mesh());
         b.input.radius_m = 1e-3;
         b.input.static_friction = b.input.dynamic_friction = 0.3;
         proxy_bench::Hand hand{std::mt19937_64(1)};
