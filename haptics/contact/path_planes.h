@@ -20,8 +20,7 @@ struct Neighbourhood {
 };
 
 /// Those within `reach_m` of `centre_m`; if there are more than there is room for, fewer, and a
-/// shorter reach, but never shorter than `least_m` unless even there are too many (then the
-/// nearest ones).
+/// shorter reach, but never shorter than `least_m`; if even there are too many, any of them.
 void look_around(const CollisionIndex& index, const MeshView& mesh, const glm::dvec3& centre_m,
                  double reach_m, double least_m, WideRing& ring, Neighbourhood& out) noexcept;
 
