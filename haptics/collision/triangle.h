@@ -63,6 +63,11 @@ struct TriangleSweep {
 TriangleSweep sweep_ball(const MovingTriangle& triangle, const glm::dvec3& from_m,
                          const glm::dvec3& to_m, double radius_m) noexcept;
 
+/// The same for a triangle at rest of which it is known what is nearest to `from_m`: cheaper.
+TriangleSweep sweep_ball(const TriangleCorners& corner, const TrianglePoint& nearest,
+                         const glm::dvec3& from_m, const glm::dvec3& to_m,
+                         double radius_m) noexcept;
+
 /// The same for a capsule, whose segment's ends move on straight lines.
 TriangleSweep sweep_capsule(const MovingTriangle& triangle, const MovingSegment& segment,
                             double radius_m) noexcept;

@@ -217,6 +217,39 @@ TriangleSweep sweep_ball(const MovingTriangle& triangle, const dvec3& from_m, co
     });
 }
 
+// The distance from a convex body is convex along a line: Newton's steps on it, from where it is
+// more than the radius, come as near to the first touch as wanted and never past it. Where the
+// direction between the nearest points is all rounding, the other one knows better.
+TriangleSweep sweep_ball(const TriangleCorners& corner, const TrianglePoint& nearest,
+                         const dvec3& from_m, const dvec3& to_m, double radius_m) noexcept {
+    const dvec3 motion = to_m - from_m;
+    const Touch touch = touch_of({corner, corner}, std::max(largest(from_m), largest(to_m)),
+                                 largest(motion), radius_m);
+    TriangleSweep at{.time = 0.0, .on_triangle = nearest};
+    for (int step = 0; step < kMostAdvances; ++step) {
+        const double distance_m = std::sqrt(at.on_triangle.distance2_m2);
+        const double gap_m = distance_m - radius_m;
+        const dvec3 offset = from_m + at.time * motion - at.on_triangle.place_m;
+        const double rate_m = glm::dot(offset, motion) / distance_m;
+        const double doubt_m = touch.motion_m * touch.rounding_m / distance_m;
+        if (!(gap_m > touch.enough_m)) {
+            // in touch from the start, or so slowly that it may slide: see there
+            if (step > 0 && gap_m >= 0.0 && -rate_m > touch.graze(gap_m) + doubt_m)
+                return at;
+            break;
+        }
+        if (!(std::abs(rate_m) > doubt_m))
+            break;
+        if (rate_m > 0.0)
+            return {};
+        at.time += (gap_m - 0.5 * touch.enough_m) / (doubt_m - rate_m);
+        if (!(at.time <= 1.0))
+            return {};
+        at.on_triangle = nearest_on_triangle(corner, from_m + at.time * motion);
+    }
+    return sweep_ball({corner, corner}, from_m, to_m, radius_m);
+}
+
 TriangleSweep sweep_capsule(const MovingTriangle& triangle, const MovingSegment& s,
                             double radius_m) noexcept {
     const dvec3 move_from = s.from_after_m - s.from_before_m,

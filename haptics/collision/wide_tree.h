@@ -90,7 +90,10 @@ struct WideRing {
     static constexpr int kRows = 11;
     alignas(64) std::array<std::array<float, kRoom + WideTree::kWidth>, kRows> row{};
     std::array<std::uint32_t, kRoom + WideTree::kWidth> leaf{};
-    std::array<float, kRoom / WideTree::kWidth> nearest{}; // to p0, of each eight columns
+    /// Boxes around each eight columns, low x y z and high x y z: the first eight boxes to ask.
+    static constexpr int kEights = kRoom / WideTree::kWidth;
+    static_assert(kEights == WideTree::kWidth);
+    alignas(64) std::array<std::array<float, kEights>, 6> around{};
 };
 
 /// Setup. Indices and vertices must be good (make_index checks). The same mesh gives the same tree.
@@ -105,17 +108,6 @@ SurfaceHit closest_within(const WideTree& tree, const MeshView& mesh, WideRing& 
                           const glm::dvec3& place_m, double radius_m) noexcept;
 SurfaceHit closest_within(const WideTree& tree, const MeshView& mesh, const glm::dvec3& place_m,
                           double radius_m) noexcept;
-
-struct NearTriangle { // not initialised: there are many, and they are filled
-    std::uint32_t triangle;
-    double least_m; // it may be as near as this, not nearer
-};
-
-/// The triangles of the mesh as it is now that come within a radius of a place: all of them, and
-/// maybe some that are farther by a rounding; in no particular order. Returns how many, also those
-/// for which `out` had no room. Its ring should not be one that closest_within uses.
-std::size_t triangles_within(const WideTree& tree, WideRing& ring, const glm::dvec3& place_m,
-                             double radius_m, std::span<NearTriangle> out) noexcept;
 
 /// Which instruction set the questions are answered with, e.g. "AVX2".
 const char* wide_tree_instructions() noexcept;

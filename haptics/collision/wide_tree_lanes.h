@@ -1,6 +1,7 @@
 // haptics/collision/wide_tree_lanes.h
 // Eight triangles, eight boxes, eight children of a node at once: the SIMD arithmetic of the wide
-// tree. Included once for each instruction set, by wide_tree_query.cpp only, after highway.h.
+// tree. Included once for each instruction set, by wide_tree_query.cpp and near_leaves.cpp only,
+// after highway.h.
 #if defined(TROCAR_WIDE_TREE_LANES) == defined(HWY_TARGET_TOGGLE)
 #ifdef TROCAR_WIDE_TREE_LANES
 #undef TROCAR_WIDE_TREE_LANES
@@ -135,6 +136,11 @@ struct RingRows {
     const WideRing& ring;
     int first;
     const float* operator()(int row) const { return ring.row[row].data() + first; }
+};
+
+struct AroundRows {
+    const WideRing& ring;
+    const float* operator()(int row) const { return ring.around[row % 6].data(); }
 };
 
 // Squares of distances below which nothing of a child can be; slabs only where a box is within

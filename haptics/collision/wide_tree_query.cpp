@@ -97,55 +97,17 @@ void search(Seen& seen) noexcept {
     }
 }
 
-void look_through(const WideRing& ring, float moved, Seen& seen) noexcept {
+void look_through(const WideRing& ring, Seen& seen) noexcept {
     alignas(64) std::array<float, kWidth> distance2;
-    for (int first = 0; first < ring.leaves; first += kWidth) {
-        if (ring.nearest[first / kWidth] - moved > seen.limit)
-            continue;
-        child_distance2(RingRows{ring, first}, true, seen.place.data(), seen.limit2,
-                        distance2.data());
-        std::uint32_t met = bits_within(distance2.data(), seen.limit2);
-        if (ring.leaves - first < kWidth)
-            met &= (1u << (ring.leaves - first)) - 1u;
-        for (; met != 0; met &= met - 1) {
+    for (std::uint32_t eights = eights_within(ring, seen.place.data(), seen.limit2); eights != 0;
+         eights &= eights - 1) {
+        const int first = std::countr_zero(eights) * kWidth;
+        for (std::uint32_t met =
+                 leaves_within(ring, first, seen.place.data(), seen.limit2, distance2.data());
+             met != 0; met &= met - 1) {
             const int lane = std::countr_zero(met);
             if (distance2[lane] <= seen.limit2 && ring.leaf[first + lane] != ring.last_leaf)
                 seen.look(ring.leaf[first + lane]);
-        }
-    }
-}
-
-// Calls look(leaf) for the leaves of the ring, or of the tree, that come within `reach`.
-template <class Look>
-void look_within(const WideRing& ring, const Asked& asked, float reach, Look&& look) {
-    alignas(64) std::array<float, kWidth> distance2;
-    for (int first = 0; first < ring.leaves; first += kWidth) {
-        child_distance2(RingRows{ring, first}, true, asked.place.data(), reach * reach,
-                        distance2.data());
-        std::uint32_t met = bits_within(distance2.data(), reach * reach);
-        if (ring.leaves - first < kWidth)
-            met &= (1u << (ring.leaves - first)) - 1u;
-        for (; met != 0; met &= met - 1)
-            look(ring.leaf[first + std::countr_zero(met)]);
-    }
-}
-template <class Look> void search_within(const Asked& asked, float reach, Look&& look) {
-    std::array<std::uint32_t, wide_detail::kMostDepth * kWidth> stack;
-    int top = 0;
-    stack[top++] = 0;
-    alignas(64) std::array<float, kWidth> distance2;
-    while (top > 0) {
-        const std::uint32_t at = stack[--top];
-        const WideTree::Node& node = asked.tree.node[at];
-        child_distance2(NodeRows{node, asked.tree.slabs[at]}, has_leaves(node), asked.place.data(),
-                        reach * reach, distance2.data());
-        for (std::uint32_t met = bits_within(distance2.data(), reach * reach); met != 0;
-             met &= met - 1) {
-            const std::uint32_t child = node.child[std::countr_zero(met)];
-            if ((child & WideTree::kLeafBit) != 0)
-                look(child & ~WideTree::kLeafBit);
-            else
-                stack[top++] = child;
         }
     }
 }
@@ -205,7 +167,7 @@ SurfaceHit closest(const WideTree& tree, const MeshView& mesh, WideRing& ring,
         const float certain = ring.reach - moved - 2.0f * seen.slack;
         if (!(certain > 0.0f))
             continue;
-        look_through(ring, moved, seen);
+        look_through(ring, seen);
         std::uint32_t leaf = ring.last_leaf;
         if (seen.full)
             break;
@@ -237,43 +199,6 @@ SurfaceHit closest_from_root(const WideTree& tree, const MeshView& mesh, const g
                      : decide(seen, mesh, place_m, radius_m, leaf);
 }
 
-// True: the ring is of this tree and holds all that is within the radius.
-bool holds(const WideRing& ring, const Asked& asked, float radius) noexcept {
-    return ring.version == asked.tree.version && ring.reach > 0.0f &&
-           radius <= ring.reach - distance(asked.place, ring.centre) - 4.0f * asked.slack;
-}
-
-std::size_t near_triangles(const WideTree& tree, WideRing& ring, const glm::dvec3& place_m,
-                           double radius_m, std::span<NearTriangle> out) {
-    const glm::dvec3 p = tree.to_tree(place_m);
-    const double radius = radius_m * tree.scale_pm;
-    if (tree.node.empty() || !askable(p) || !(radius >= 0.0 && radius < 1e18))
-        return 0;
-    ++ring.asked;
-    const Asked asked{tree, p};
-    const float reach = static_cast<float>(radius) + 2.0f * asked.slack;
-    std::size_t found = 0;
-    const auto look = [&](std::uint32_t at) {
-        alignas(32) std::array<float, kWidth> distance2;
-        leaf_distance2(tree.leaf[at], asked.place.data(), distance2.data());
-        for (std::uint32_t met = bits_within(distance2.data(), reach * reach); met != 0;
-             met &= met - 1) {
-            const int lane = std::countr_zero(met);
-            const double least = std::sqrt(distance2[lane]) - 2.0 * asked.slack;
-            if (found < out.size())
-                out[found] = {tree.member[at].triangle[lane], std::max(0.0, least) / tree.scale_pm};
-            ++found;
-        }
-    };
-    if (holds(ring, asked, reach) || make_ring(ring, asked, reach)) {
-        look_within(ring, asked, reach, look);
-        ring.last_place = asked.place;
-    } else {
-        search_within(asked, reach, look);
-    }
-    return found;
-}
-
 const char* instructions() {
     return hwy::TargetName(HWY_TARGET);
 }
@@ -287,7 +212,6 @@ namespace haptics {
 
 HWY_EXPORT(closest);
 HWY_EXPORT(closest_from_root);
-HWY_EXPORT(near_triangles);
 HWY_EXPORT(instructions);
 
 SurfaceHit closest_within(const WideTree& tree, const MeshView& mesh, WideRing& ring,
@@ -298,11 +222,6 @@ SurfaceHit closest_within(const WideTree& tree, const MeshView& mesh, WideRing& 
 SurfaceHit closest_within(const WideTree& tree, const MeshView& mesh, const glm::dvec3& place_m,
                           double radius_m) noexcept {
     return HWY_DYNAMIC_DISPATCH(closest_from_root)(tree, mesh, place_m, radius_m);
-}
-
-std::size_t triangles_within(const WideTree& tree, WideRing& ring, const glm::dvec3& place_m,
-                             double radius_m, std::span<NearTriangle> out) noexcept {
-    return HWY_DYNAMIC_DISPATCH(near_triangles)(tree, ring, place_m, radius_m, out);
 }
 
 const char* wide_tree_instructions() noexcept {

@@ -1,7 +1,7 @@
 // haptics/collision/wide_tree_ring.h
 // Making the ring of leaves around a place: which ball of leaves holds the balls of this place and
 // of those that will be asked about next. Included once for each instruction set, by
-// wide_tree_query.cpp only.
+// wide_tree_query.cpp and near_leaves.cpp only.
 #if defined(TROCAR_WIDE_TREE_RING) == defined(HWY_TARGET_TOGGLE)
 #ifdef TROCAR_WIDE_TREE_RING
 #undef TROCAR_WIDE_TREE_RING
@@ -115,10 +115,39 @@ float place_ring(WideRing& ring, const Asked& asked, float bound) noexcept {
     const float h = bound + t;
     ring.reach = std::max(std::sqrt(h * h + ring.disc2), h + 8.0f * asked.slack);
     const float room2 = (ring.reach - bound) * (ring.reach - bound) - t * t;
-    const float lead = beside > 0.0f && beside < room2 ? 0.6f * std::sqrt(room2 / beside) : 0.0f;
+    // what is left of a way straight up is rounding, and leads anywhere
+    const bool leads = beside > 1e-6f * along * along && beside < room2;
+    const float lead = leads ? 0.6f * std::sqrt(room2 / beside) : 0.0f;
     for (int axis = 0; axis < 3; ++axis)
         ring.centre[axis] = asked.place[axis] + t * up[axis] + lead * ahead[axis];
     return h;
+}
+
+// The boxes around each eight leaves; where there are none, one that is never met.
+void put_around(WideRing& ring) noexcept {
+    for (int row = 0; row < 6; ++row)
+        for (int eight = 0; eight < WideRing::kEights; ++eight) {
+            const auto first = ring.row[row].begin() + eight * kWidth;
+            const auto last = first + std::clamp(ring.leaves - eight * kWidth, 0, kWidth);
+            ring.around[row][eight] = first == last ? (row < 3 ? kFar : -kFar)
+                                      : row < 3     ? *std::min_element(first, last)
+                                                    : *std::max_element(first, last);
+        }
+}
+
+// Which eights of a ring come within the root of `limit2`.
+HWY_INLINE std::uint32_t eights_within(const WideRing& ring, const float* place, float limit2) {
+    alignas(64) std::array<float, kWidth> distance2;
+    child_distance2(AroundRows{ring}, false, place, limit2, distance2.data());
+    return bits_within(distance2.data(), limit2);
+}
+
+// Of the eight leaves from `first`, those that do; what comes from them is put in `distance2`.
+HWY_INLINE std::uint32_t leaves_within(const WideRing& ring, int first, const float* place,
+                                       float limit2, float* distance2) {
+    child_distance2(RingRows{ring, first}, true, place, limit2, distance2);
+    const int behind = kWidth - std::min(kWidth, ring.leaves - first);
+    return bits_within(distance2, limit2) & (0xffu >> behind);
 }
 
 // All leaves in a ball around the nearest, as large as there is room for. False: no room even
@@ -156,10 +185,7 @@ bool make_ring(WideRing& ring, const Asked& asked, float bound) noexcept {
             }
     }
     ring.disc2 = next_disc2(ring, height);
-    for (int first = 0; first < ring.leaves; first += kWidth)
-        ring.nearest[first / kWidth] = std::sqrt(
-            *std::min_element(ring_distance2.begin() + first,
-                              ring_distance2.begin() + std::min(first + kWidth, ring.leaves)));
+    put_around(ring);
     return true;
 }
 

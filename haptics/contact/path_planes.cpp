@@ -6,50 +6,15 @@
 #include <limits>
 
 namespace haptics {
-namespace {
-
 using glm::dvec3;
 
-// Any method but ours: boxes say who may be near, the triangles themselves who is.
-std::size_t gather(const CollisionIndex& index, const MeshView& mesh, const dvec3& centre_m,
-                   double reach_m, WideRing& ring, std::span<NearTriangle> out) noexcept {
-    if (const auto* tree = std::get_if<WideTree>(&index))
-        return triangles_within(*tree, ring, centre_m, reach_m, out);
-    std::size_t found = 0;
-    Reach reach{centre_m, centre_m, reach_m};
-    std::visit(
-        [&](const auto& method) {
-            visit(method, reach, [&](std::uint32_t t) {
-                for (std::size_t i = 0; i < std::min(found, out.size()); ++i)
-                    if (out[i].triangle == t)
-                        return; // a method may visit a triangle twice
-                const TrianglePoint nearest = nearest_on_triangle(mesh.corners(t), centre_m);
-                const double distance = std::sqrt(nearest.distance2_m2);
-                if (!(distance <= reach_m))
-                    return;
-                if (found < out.size())
-                    out[found] = {t, distance * (1.0 - 1e-12)};
-                ++found;
-            });
-        },
-        index);
-    return found;
-}
-
-} // namespace
-
 void look_around(const CollisionIndex& index, const MeshView& mesh, const dvec3& centre_m,
-                 double reach_m, double least_m, WideRing& ring, Neighbourhood& out) noexcept {
-    std::size_t found = 0;
+                 double reach_m, double least_m, WideRing& ring, NearLeaves& out) noexcept {
     for (int attempt = 0; attempt < 12; ++attempt) {
-        found = gather(index, mesh, centre_m, reach_m, ring, out.near);
-        if (found <= out.near.size() || reach_m <= least_m)
-            break;
+        if (find_near(index, mesh, centre_m, reach_m, ring, out) || reach_m <= least_m)
+            return;
         reach_m = std::max(least_m, attempt < 10 ? 0.5 * (reach_m + least_m) : least_m);
     }
-    out.reach_m = reach_m;
-    out.count = static_cast<int>(std::min(found, out.near.size()));
-    out.mesh = mesh;
 }
 
 void HoldingPlanes::add(std::uint32_t triangle, const TriangleCorners& corner,

@@ -3,26 +3,16 @@
 // safe_proxy.h. Real-time safe.
 #pragma once
 
-#include "haptics/collision/index.h"
+#include "haptics/collision/near_leaves.h"
 #include "haptics/contact/plane_qp.h"
 #include "haptics/contact/proxy_method.h"
 
 namespace haptics {
 
-/// Triangles that a ball may meet within some way of where it is.
-struct Neighbourhood {
-    static constexpr int kRoom = 256;
-    int count = 0;
-    double reach_m = 0.0; // from the centre; beyond it nothing is known
-    std::array<NearTriangle, kRoom> near;
-    MeshView mesh{};
-    TriangleCorners corner(int i) const noexcept { return mesh.corners(near[i].triangle); }
-};
-
-/// Those within `reach_m` of `centre_m`; if there are more than there is room for, fewer, and a
-/// shorter reach, but never shorter than `least_m`; if even there are too many, any of them.
+/// What comes within `reach_m` of `centre_m`; if there is more than there is room for, with a
+/// shorter reach, but never shorter than `least_m`; if even there is too much, any of it.
 void look_around(const CollisionIndex& index, const MeshView& mesh, const glm::dvec3& centre_m,
-                 double reach_m, double least_m, WideRing& ring, Neighbourhood& out) noexcept;
+                 double reach_m, double least_m, WideRing& ring, NearLeaves& out) noexcept;
 
 /// Planes that hold the ball now, with the surface points they come from.
 struct HoldingPlanes {

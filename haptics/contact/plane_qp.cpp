@@ -143,6 +143,26 @@ double worst_violation(const Problem& problem, const Foot& foot) noexcept {
     return worst_m;
 }
 
+/// Of the feet that the search visits, the one that violates its worst plane least: the search
+/// once more, for those that have no solution.
+Foot least_wrong(const Problem& problem) noexcept {
+    Foot foot, best;
+    double best_m = worst_violation(problem, foot);
+    const int most = 16 + 4 * static_cast<int>(problem.plane.size());
+    for (int i = 0; i < most; ++i) {
+        const int worst = worst_plane(problem, foot, {});
+        Foot next;
+        if (worst < 0 || !step_over(problem, foot, worst, next))
+            break;
+        foot = next;
+        if (const double m = worst_violation(problem, foot); m < best_m) {
+            best_m = m;
+            best = foot;
+        }
+    }
+    return best;
+}
+
 PlaneSolution told(const Problem& problem, const Foot& foot, bool feasible) noexcept {
     return {.place_m = problem.goal_m + foot.step_m,
             .active = foot.plane,
@@ -174,8 +194,7 @@ PlaneSolution nearest_in_planes(std::span<const Plane> planes, const dvec3& goal
 
     // the planes of last time first, then the worst of all, until none is violated; the distance
     // to the goal grows with every step, so none comes back
-    Foot foot, least_wrong;
-    double least_m = worst_violation(problem, foot);
+    Foot foot;
     bool warming = knowns > 0;
     const int most = 16 + 4 * static_cast<int>(planes.size());
     for (int i = 0; i < most; ++i) {
@@ -190,12 +209,8 @@ PlaneSolution nearest_in_planes(std::span<const Plane> planes, const dvec3& goal
         if (!step_over(problem, foot, worst, next))
             break;
         foot = next;
-        if (const double m = worst_violation(problem, foot); m < least_m) {
-            least_m = m;
-            least_wrong = foot;
-        }
     }
-    return told(problem, least_wrong, false);
+    return told(problem, least_wrong(problem), false);
 }
 
 } // namespace haptics

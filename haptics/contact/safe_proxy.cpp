@@ -21,43 +21,6 @@ struct Walk {
     bool slid;         // in the last tick
 };
 
-// Planes of what the ball touches where it is, and of the nearest triangle, which will most likely
-// hold it where it goes.
-HoldingPlanes touching(const Neighbourhood& around, const Walk& walk,
-                       const dvec3& centre_m) noexcept {
-    HoldingPlanes out;
-    if (around.count == 0)
-        return out;
-    const double rest_m = walk.in.radius_m + walk.hover_m, touching_m = rest_m + walk.hover_m;
-    const auto end = around.near.begin() + around.count;
-    const auto first = std::min_element(
-        around.near.begin(), end,
-        [](const NearTriangle& a, const NearTriangle& b) { return a.least_m < b.least_m; });
-    int nearest = static_cast<int>(first - around.near.begin());
-    TrianglePoint nearest_at = nearest_on_triangle(around.corner(nearest), centre_m);
-    double nearest_m = std::sqrt(nearest_at.distance2_m2);
-    if (nearest_m <= touching_m)
-        out.add(first->triangle, around.corner(nearest), nearest_at, centre_m, rest_m);
-    const int known = nearest;
-    for (int i = 0; i < around.count; ++i) {
-        if (around.near[i].least_m > std::max(nearest_m, touching_m) || i == known)
-            continue;
-        const TrianglePoint at = nearest_on_triangle(around.corner(i), centre_m);
-        const double distance = std::sqrt(at.distance2_m2);
-        if (distance <= touching_m)
-            out.add(around.near[i].triangle, around.corner(i), at, centre_m, rest_m);
-        if (distance < nearest_m) {
-            nearest = i;
-            nearest_at = at;
-            nearest_m = distance;
-        }
-    }
-    if (out.count == 0 && nearest_m <= rest_m + walk.longest_m)
-        out.add(around.near[nearest].triangle, around.corner(nearest), nearest_at, centre_m,
-                rest_m);
-    return out;
-}
-
 // A triangle all of which lies behind a plane that both ends of the path keep cannot be met.
 bool behind_a_plane(const HoldingPlanes& planes, const TriangleCorners& corner,
                     double touch_m) noexcept {
@@ -70,9 +33,59 @@ bool behind_a_plane(const HoldingPlanes& planes, const TriangleCorners& corner,
     return false;
 }
 
+// The nearest triangle of all, beyond touch.
+int nearest_of(const NearLeaves& around, const dvec3& centre_m, TrianglePoint& at) noexcept {
+    int nearest = nearest_place(around);
+    if (nearest < 0)
+        return nearest;
+    const double off_m = glm::length(centre_m - around.centre_m);
+    at = nearest_on_triangle(around.corner(nearest), centre_m);
+    for (int i = 0; i < around.count; ++i) {
+        const float bound = around.bound(std::sqrt(at.distance2_m2) + off_m);
+        for (int lane = 0; lane < NearLeaves::kWidth && around.least_of_leaf[i] <= bound; ++lane) {
+            const int place = i * NearLeaves::kWidth + lane;
+            if (!(around.least(place) <= bound) || place == nearest)
+                continue;
+            const TrianglePoint other = nearest_on_triangle(around.corner(place), centre_m);
+            if (!(other.distance2_m2 < at.distance2_m2))
+                continue;
+            nearest = place;
+            at = other;
+        }
+    }
+    return nearest;
+}
+
+// Planes of what the ball touches where it is; or of the nearest triangle, which will most likely
+// hold it where it goes.
+void touching(const NearLeaves& around, const Walk& walk, const dvec3& centre_m,
+              HoldingPlanes& out) noexcept {
+    out.count = 0;
+    const double rest_m = walk.in.radius_m + walk.hover_m, touching_m = rest_m + walk.hover_m;
+    Places place;
+    const int count = centre_m == around.centre_m
+                          ? may_touch(around, touching_m, place)
+                          : may_meet(around, centre_m, centre_m, touching_m, place);
+    for (int i = 0; i < count; ++i) {
+        const TriangleCorners corner = around.corner(place[i]);
+        if (behind_a_plane(out, corner, rest_m - 0.25 * walk.hover_m))
+            continue; // around a corner or along an edge they share one
+        const TrianglePoint at = nearest_on_triangle(corner, centre_m);
+        if (at.distance2_m2 <= touching_m * touching_m)
+            out.add(around.triangle(place[i]), corner, at, centre_m, rest_m);
+    }
+    if (out.count > 0)
+        return;
+    TrianglePoint at;
+    const int nearest = nearest_of(around, centre_m, at);
+    const double most_m = rest_m + walk.longest_m;
+    if (nearest >= 0 && at.distance2_m2 <= most_m * most_m)
+        out.add(around.triangle(nearest), around.corner(nearest), at, centre_m, rest_m);
+}
+
 // What a straight path of the centre meets.
 struct Met {
-    int index = -1; // in the neighbourhood; -1: nothing
+    int place = -1; // among those near; -1: nothing
     double time = 2.0;
     TrianglePoint at; // nearest to `centre_m`, from which a plane may be made
     dvec3 centre_m{0.0};
@@ -91,22 +104,25 @@ bool parts(const TrianglePoint& nearest, const dvec3& centre_m, const dvec3& oth
 
 // If some triangles are in the way only at its end, and from the start a plane can be seen between,
 // the one that is deepest there; else the first to be touched by the moving ball.
-Met meets(const Neighbourhood& around, const Walk& walk, const HoldingPlanes& planes,
-          const dvec3& looked_m, const dvec3& from_m, const dvec3& to_m) noexcept {
+Met meets(const NearLeaves& around, const Walk& walk, const HoldingPlanes& planes,
+          const dvec3& from_m, const dvec3& to_m) noexcept {
     Met first, deepest;
-    const double off_m = std::max(glm::length(from_m - looked_m), glm::length(to_m - looked_m));
     double deepest2_m2 = walk.touch_m * walk.touch_m;
-    for (int i = 0; i < around.count; ++i) {
-        if (around.near[i].least_m > walk.touch_m + off_m)
-            continue;
-        const TriangleCorners corner = around.corner(i);
+    Places place;
+    const int count = may_meet(around, from_m, to_m, walk.touch_m, place);
+    for (int i = 0; i < count; ++i) {
+        const int at = static_cast<int>(place[i]);
+        const TriangleCorners corner = around.corner(at);
         if (behind_a_plane(planes, corner, walk.touch_m))
             continue;
+        TrianglePoint start;
+        if (first.place >= 0) { // is it before that one?
+            start = nearest_on_triangle(corner, from_m);
+            if (parts(start, from_m, first.centre_m, walk))
+                continue;
+        }
         const TrianglePoint end = nearest_on_triangle(corner, to_m);
         if (parts(end, to_m, from_m, walk))
-            continue;
-        const TrianglePoint start = nearest_on_triangle(corner, from_m);
-        if (parts(start, from_m, to_m, walk))
             continue;
         const dvec3 offset = to_m - end.place_m;
         if (end.distance2_m2 < walk.touch_m * walk.touch_m && end.distance2_m2 > 0.0 &&
@@ -114,34 +130,38 @@ Met meets(const Neighbourhood& around, const Walk& walk, const HoldingPlanes& pl
                 (walk.touch_m + walk.hover_m) * std::sqrt(end.distance2_m2)) {
             if (end.distance2_m2 < deepest2_m2) {
                 deepest2_m2 = end.distance2_m2;
-                deepest = {i, 1.0, end, to_m};
+                deepest = {at, 1.0, end, to_m};
             }
             continue;
         }
-        const TriangleSweep sweep = sweep_ball({corner, corner}, from_m, to_m, walk.touch_m);
+        if (first.place < 0)
+            start = nearest_on_triangle(corner, from_m);
+        const TriangleSweep sweep = sweep_ball(corner, start, from_m, to_m, walk.touch_m);
         if (sweep.time <= 1.0 && sweep.time < first.time)
-            first = {i, sweep.time, sweep.on_triangle, from_m + sweep.time * (to_m - from_m)};
+            first = {at, sweep.time, sweep.on_triangle, from_m + sweep.time * (to_m - from_m)};
     }
-    return first.index >= 0 ? first : deepest;
+    return first.place >= 0 ? first : deepest;
 }
 
 // How far along a path nothing is met.
-double free_part(const Neighbourhood& around, const Walk& walk, const HoldingPlanes& planes,
+double free_part(const NearLeaves& around, const Walk& walk, const HoldingPlanes& planes,
                  const dvec3& from_m, const dvec3& to_m) noexcept {
     double time = 1.0;
-    for (int i = 0; i < around.count; ++i)
-        if (!behind_a_plane(planes, around.corner(i), walk.touch_m))
-            time = std::min(
-                time,
-                sweep_ball({around.corner(i), around.corner(i)}, from_m, to_m, walk.touch_m).time);
+    Places place;
+    const int count = may_meet(around, from_m, to_m, walk.touch_m, place);
+    for (int i = 0; i < count; ++i) {
+        const TriangleCorners corner = around.corner(place[i]);
+        if (!behind_a_plane(planes, corner, walk.touch_m))
+            time = std::min(time, sweep_ball({corner, corner}, from_m, to_m, walk.touch_m).time);
+    }
     return time;
 }
 
 enum class Step { arrived, turned, shortened, blocked };
 
 // One straight step of the centre, turned aside by what it would meet.
-Step step(const Neighbourhood& around, const Walk& walk, const dvec3& looked_m,
-          HoldingPlanes& planes, dvec3& centre_m, bool& sliding) noexcept {
+Step step(const NearLeaves& around, const Walk& walk, HoldingPlanes& planes, dvec3& centre_m,
+          bool& sliding) noexcept {
     for (int touch = 0; touch <= kMostTouches; ++touch) {
         const PlaneSolution nearest = nearest_in_planes(
             std::span<const Plane>(planes.plane).first(planes.count), walk.in.device_m);
@@ -159,14 +179,14 @@ Step step(const Neighbourhood& around, const Walk& walk, const dvec3& looked_m,
         const bool too_far = way_m > walk.longest_m;
         const dvec3 to_m =
             too_far ? centre_m + walk.longest_m / way_m * (wanted_m - centre_m) : wanted_m;
-        const Met met = meets(around, walk, planes, looked_m, centre_m, to_m);
-        if (met.index < 0) {
+        const Met met = meets(around, walk, planes, centre_m, to_m);
+        if (met.place < 0) {
             centre_m = to_m;
             sliding = slides;
             return too_far ? Step::shortened : touch > 0 ? Step::turned : Step::arrived;
         }
         const int before = planes.count;
-        planes.add(around.near[met.index].triangle, around.corner(met.index), met.at, met.centre_m,
+        planes.add(around.triangle(met.place), around.corner(met.place), met.at, met.centre_m,
                    walk.in.radius_m + walk.hover_m);
         if (planes.count == before || touch == kMostTouches) { // as far as it is free
             centre_m += free_part(around, walk, planes, centre_m, to_m) * (to_m - centre_m);
@@ -199,68 +219,86 @@ bool holds_back(const HoldingPlanes& planes, const dvec3& device_m) noexcept {
     return false;
 }
 
+// What is known around the ball, and where it may go on that knowledge.
+struct Around {
+    const CollisionIndex& index;
+    const MeshView& mesh;
+    double least_m; // radius, and what is to be seen beyond it wherever the ball is
+    NearLeaves near;
+    double known_m = -1.0; // the ball's centre may be as far as this from the look's
+
+    // by hand: an aggregate would be filled with zeros first, all 27 kB of it
+    Around(const CollisionIndex& i, const MeshView& m, double least) noexcept
+        : index(i), mesh(m), least_m(least) {}
+    void look(const dvec3& centre_m, double way_m, WideRing& ring) noexcept {
+        look_around(index, mesh, centre_m, least_m + way_m, least_m, ring, near);
+        known_m = near.reach_m - least_m;
+    }
+};
+
+// The straight way to the device is free: first as far as is known, then, if need be, all of it.
+bool free_to_device(Around& around, const Walk& walk, const HoldingPlanes& planes,
+                    const dvec3& centre_m, WideRing& ring) noexcept {
+    const dvec3& device_m = walk.in.device_m;
+    const double way_m = glm::length(device_m - centre_m);
+    const double seen = std::min(1.0, walk.longest_m / way_m);
+    if (meets(around.near, walk, planes, centre_m, centre_m + seen * (device_m - centre_m)).place >=
+        0)
+        return false;
+    around.look(centre_m, way_m, ring);
+    return way_m <= around.known_m &&
+           meets(around.near, walk, planes, centre_m, device_m).place < 0;
+}
+
 // To where the device pulls, as far as a tick allows.
 // `most_m`: no farther in this tick, unless the straight way to the device is free: off a surface
 // there is no force left.
 void approach(const CollisionIndex& index, const MeshView& mesh, const ProxyInput& in,
-              double most_m, ProxyState& state) noexcept {
+              double most_m, double device_way_m, ProxyState& state) noexcept {
     const dvec3 start_m = state.proxy_m;
     const double pull_m = glm::length(in.device_m - start_m);
     // as far as the device, and a little for what has piled up; in the air all the way
-    const double guess_m = state.touching ? 1.25 * glm::length(in.device_m - state.device_m) +
-                                                0.25 * state.step_m + 0.002 * pull_m
-                                          : pull_m;
+    const double guess_m =
+        state.touching ? 1.25 * device_way_m + 0.25 * state.step_m + 0.002 * pull_m : pull_m;
     Walk walk{.in = in,
               .hover_m = state.hover_m,
-              .touch_m = 0.0,
+              .touch_m = in.radius_m + 0.5 * state.hover_m,
               .longest_m = std::min({guess_m, pull_m, most_m}),
               .rounding_m =
                   16.0 * std::numeric_limits<double>::epsilon() *
                   (std::abs(start_m.x) + std::abs(start_m.y) + std::abs(start_m.z) + pull_m),
               .slid = state.sliding};
-    walk.touch_m = in.radius_m + 0.5 * walk.hover_m;
-    const double least_m = in.radius_m + 3.0 * walk.hover_m;
-
-    Neighbourhood around;
+    Around around{index, mesh, in.radius_m + 3.0 * walk.hover_m};
     HoldingPlanes planes;
-    dvec3 looked_m = start_m;
     bool sliding = false, looked_far = false;
-    double known_m = -1.0; // how far from `looked_m` the centre may be
+    state.step_m = 0.0;
     for (int i = 0; i < kMostSteps && most_m > 0.0; ++i) {
-        walk.longest_m = std::min(walk.longest_m, most_m);
-        const double gone_m = glm::length(state.proxy_m - looked_m);
-        if (gone_m + 0.1 * walk.longest_m > known_m) {
-            looked_m = state.proxy_m;
-            look_around(index, mesh, looked_m, least_m + 1.1 * walk.longest_m, least_m, state.ring,
-                        around);
-            known_m = around.reach_m - least_m;
+        const double longest_m = std::min(walk.longest_m, most_m);
+        double gone_m = i == 0 ? 0.0 : glm::length(state.proxy_m - around.near.centre_m);
+        if (gone_m + 0.1 * longest_m > around.known_m) {
+            around.look(state.proxy_m, 1.1 * longest_m, state.ring);
+            gone_m = 0.0;
         }
-        Walk now = walk;
-        now.longest_m = std::min(walk.longest_m, known_m - glm::length(state.proxy_m - looked_m));
-        planes = touching(around, now, state.proxy_m);
-        if (!holds_back(planes, in.device_m) && !looked_far && walk.longest_m < pull_m) {
+        walk.longest_m = std::min(longest_m, around.known_m - gone_m);
+        touching(around.near, walk, state.proxy_m, planes);
+        if (!holds_back(planes, in.device_m) && !looked_far && longest_m < pull_m) {
             looked_far = true;
-            looked_m = state.proxy_m;
-            const double way_m = glm::length(in.device_m - looked_m);
-            look_around(index, mesh, looked_m, least_m + way_m, least_m, state.ring, around);
-            known_m = around.reach_m - least_m;
-            if (way_m <= known_m &&
-                meets(around, walk, planes, looked_m, looked_m, in.device_m).index < 0) {
+            if (free_to_device(around, walk, planes, state.proxy_m, state.ring)) {
+                state.step_m += glm::length(in.device_m - state.proxy_m);
                 state.proxy_m = in.device_m;
                 break;
             }
         }
         const dvec3 from_m = state.proxy_m;
-        const Step done = step(around, now, looked_m, planes, state.proxy_m, sliding);
+        const Step done = step(around.near, walk, planes, state.proxy_m, sliding);
         const double way_m = glm::length(state.proxy_m - from_m);
+        state.step_m += way_m;
         most_m -= way_m;
-        if (done == Step::blocked || done == Step::arrived || way_m <= walk.hover_m)
+        if (done != Step::shortened || way_m <= walk.hover_m || state.step_m >= device_way_m)
             break; // what turns with the surface on the way is left to the next tick
-        if (done == Step::shortened)
-            walk.longest_m = std::min(2.0 * walk.longest_m, pull_m);
+        walk.longest_m = std::min(2.0 * longest_m, pull_m);
     }
     state.sliding = sliding;
-    state.step_m = glm::length(state.proxy_m - start_m);
     tell_contacts(planes, in, walk.hover_m, state);
 }
 
@@ -277,15 +315,16 @@ void step_safe_proxy(const CollisionIndex& index, const MeshView& mesh, const Pr
         state.proxy_m = state.device_m = in.device_m;
         state.hover_m = hover_of(mesh, in);
     }
-    const dvec3 start_m = state.proxy_m;
-    if (!mesh.before_m.empty())
+    double ridden_m = 0.0;
+    if (!mesh.before_m.empty()) {
+        const dvec3 start_m = state.proxy_m;
         ride_along(index, mesh, in, state);
+        ridden_m = glm::length(state.proxy_m - start_m);
+    }
     const double catch_up_m = in.stiffness_npm > 0.0 ? kCatchUp_n / in.stiffness_npm : 0.0;
-    const double ridden_m = glm::length(state.proxy_m - start_m);
-    approach(index, mesh, in,
-             glm::length(in.device_m - state.device_m) +
-                 std::max(catch_up_m - ridden_m, 0.2 * catch_up_m),
-             state);
+    const double device_way_m = glm::length(in.device_m - state.device_m);
+    approach(index, mesh, in, device_way_m + std::max(catch_up_m - ridden_m, 0.2 * catch_up_m),
+             device_way_m, state);
     state.device_m = in.device_m;
     state.sliding = state.sliding && state.touching;
     // also in the air, until it has caught up

@@ -197,14 +197,18 @@ TEST_CASE("triangle: a swept ball or point touches never late, and early by the 
             const dvec3 from = random.place(1.0);
             const dvec3 middle = (t.at(0.5)[0] + t.at(0.5)[1] + t.at(0.5)[2]) / 3.0;
             const dvec3 to = from + random.between(0.5, 2.0) * (middle - from);
+            const auto distance = [&](double time) {
+                return distance_to(t.at(time), Long3{from + time * (to - from)});
+            };
             const TriangleSweep sweep = haptics::sweep_ball(t, from, to, radius);
             hits += sweep.hit();
-            check_sweep(
-                sweep,
-                [&](double time) {
-                    return distance_to(t.at(time), Long3{from + time * (to - from)});
-                },
-                radius, 4.0, 80.0 * kEpsilon * 4.0);
+            check_sweep(sweep, distance, radius, 4.0, 80.0 * kEpsilon * 4.0);
+            if (i % 2 == 0)
+                continue;
+            const TriangleSweep known = haptics::sweep_ball(
+                t.before, haptics::nearest_on_triangle(t.before, from), from, to, radius);
+            check_sweep(known, distance, radius, 4.0, 80.0 * kEpsilon * 4.0);
+            RC_ASSERT(known.hit() == sweep.hit());
         }
     }));
     CHECK(hits > 100);
@@ -264,6 +268,9 @@ TEST_CASE("triangle: a ball at rest on a face may slide, over its edge too, and 
                 CAPTURE(far);
                 CAPTURE(way.x);
                 CHECK_FALSE(haptics::sweep_ball({t, t}, from, from + way, radius).hit());
+                CHECK_FALSE(haptics::sweep_ball(t, haptics::nearest_on_triangle(t, from), from,
+                                                from + way, radius)
+                                .hit());
             }
         const dvec3 press{0.0, 0.0, -1e-3};
         CHECK(haptics::sweep_ball({left, left}, from, from + press, radius).time <= 1e-6);
