@@ -1,5 +1,7 @@
 #include "sim/study/bar_chart.h"
 
+#include "sim/study/svg_parts.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,11 +15,6 @@ constexpr std::array<const char*, 8> kColour{"#0072b2", "#56b4e9", "#d55e00", "#
                                              "#009e73", "#8fd9c0", "#333333", "#999999"};
 constexpr double kName = 170.0; // of a series, in the legend
 constexpr double kLeft = 60.0, kTop = 40.0, kHeight = 260.0, kBar = 17.0, kBetween = 34.0;
-
-std::string text(double x, double y, const char* anchor, const std::string& what) {
-    return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y,
-                       anchor, what);
-}
 
 /// 1, 2 or 5 times a power of ten; about five of them up to `most`.
 double tick_step(double most) {
@@ -42,18 +39,14 @@ std::string bar_chart_svg(const std::string& title, const std::string& axis,
     const double bottom = kTop + kHeight, legend = bottom + 50.0;
     const auto names = static_cast<std::size_t>(std::max(1.0, std::floor(width / kName)));
     const double rows = std::ceil(static_cast<double>(series.size()) / static_cast<double>(names));
-    std::string svg = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-        "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\" font-size=\"12\">\n"
-        "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-        kLeft + width + 20.0, legend + 20.0 * rows);
-    svg += text(kLeft, 20.0, "start", title + ", " + axis);
+    std::string svg = svg_sheet(kLeft + width + 20.0, legend + 20.0 * rows, 12);
+    svg += svg_text(kLeft, 20.0, "start", title + ", " + axis);
     for (double tick = 0.0; tick <= most; tick += tick_step(most)) {
         const double y = bottom - kHeight * tick / most;
         svg += fmt::format("<line x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\" "
                            "stroke=\"#ddd\"/>\n",
                            kLeft, kLeft + width, y, y);
-        svg += text(kLeft - 6.0, y + 4.0, "end", fmt::format("{:g}", tick));
+        svg += svg_text(kLeft - 6.0, y + 4.0, "end", fmt::format("{:g}", tick));
     }
     for (std::size_t g = 0; g < groups.size(); ++g) {
         const double left = kLeft + group_width * static_cast<double>(g) + 0.5 * kBetween;
@@ -64,7 +57,8 @@ std::string bar_chart_svg(const std::string& title, const std::string& axis,
                                left + kBar * static_cast<double>(s), bottom - height, kBar - 2.0,
                                height, kColour[s % kColour.size()]);
         }
-        svg += text(left + 0.5 * (group_width - kBetween), bottom + 18.0, "middle", groups[g].name);
+        svg += svg_text(left + 0.5 * (group_width - kBetween), bottom + 18.0, "middle",
+                        groups[g].name);
     }
     for (std::size_t s = 0; s < series.size(); ++s) {
         const double x = kLeft + kName * static_cast<double>(s % names),
@@ -72,7 +66,7 @@ std::string bar_chart_svg(const std::string& title, const std::string& axis,
         svg += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"11\" height=\"11\" "
                            "fill=\"{}\"/>\n",
                            x, y - 10.0, kColour[s % kColour.size()]);
-        svg += text(x + 16.0, y, "start", series[s]);
+        svg += svg_text(x + 16.0, y, "start", series[s]);
     }
     return svg + "</svg>\n";
 }

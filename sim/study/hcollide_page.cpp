@@ -2,21 +2,13 @@
 #include "sim/io/files.h"
 #include "sim/study/bar_chart.h"
 #include "sim/study/hcollide_study.h"
+#include "sim/study/machine.h"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <fstream>
 
 namespace sim {
 namespace {
-
-std::string processor() {
-    std::ifstream in("/proc/cpuinfo");
-    for (std::string line; std::getline(in, line);)
-        if (line.starts_with("model name"))
-            return line.substr(std::min(line.find(':') + 2, line.size()));
-    return "unknown processor";
-}
 
 std::string name_of(const HcollideRow& r) {
     return r.method + (r.witness ? " + witness" : "");
@@ -180,7 +172,7 @@ void write_hcollide_study(const HcollideOptions& o, const HcollideStudy& study,
         "![deforming](contact_deforming.svg)\n\n## Is the hybrid worth it?\n\n{}\n## Is the "
         "witness?\n\nIt is measured before the "
         "method is asked; triangles are those the method came up with. At rest:\n\n{}",
-        o.queries, o.seed, o.rounds, study.clock_us, different, processor(), table_of(study, false),
+        o.queries, o.seed, o.rounds, study.clock_us, different, machine(), table_of(study, false),
         table_of(study, true), finding_of(study), witness_of(study));
     write_text(out / "contact.csv", csv_of(study));
     write_text(out / "contact.md", page);

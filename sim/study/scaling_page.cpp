@@ -1,30 +1,18 @@
 // The scaling study's CSV, chart and page; see scaling_study.h.
+#include "sim/study/machine.h"
 #include "sim/study/scaling_study.h"
 #include "sim/study/svg_chart.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <fstream>
 #include <map>
 #include <stdexcept>
-#include <unistd.h>
 
 namespace sim {
 namespace {
 
 constexpr const char* kFresh = "embree";
 constexpr const char* kWarm = "embree-warm";
-
-std::string machine() {
-    std::string model = "unknown processor";
-    std::ifstream in("/proc/cpuinfo");
-    for (std::string line; std::getline(in, line);)
-        if (line.starts_with("model name")) {
-            model = line.substr(line.find(':') + 2);
-            break;
-        }
-    return fmt::format("{}, {} processors", model, sysconf(_SC_NPROCESSORS_ONLN));
-}
 
 /// "-" for what there is none of.
 std::string cell(double value, const char* format) {

@@ -1,5 +1,7 @@
 #include "sim/study/svg_chart.h"
 
+#include "sim/study/svg_parts.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,22 +16,6 @@ constexpr double kLeft = 80.0, kRight = 640.0, kTop = 50.0, kBottom = 490.0;
 constexpr std::array<const char*, 12> kColour{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                               "#e69f00", "#56b4e9", "#000000", "#8a8a00",
                                               "#7570b3", "#a50026", "#888888", "#66c2a5"};
-
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text)
-        switch (c) {
-        case '<':
-            out += "&lt;";
-            break;
-        case '&':
-            out += "&amp;";
-            break;
-        default:
-            out += c;
-        }
-    return out;
-}
 
 /// From a 1, 2 or 5 of a decade to another, around all values.
 struct LogAxis {
@@ -71,12 +57,6 @@ std::string short_number(double v) {
     return v >= 0.999e3 ? fmt::format("{:g}k", v / 1e3) : fmt::format("{:g}", v);
 }
 
-std::string text_at(double x, double y, const char* anchor, const std::string& text,
-                    const std::string& more = "") {
-    return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y,
-                       anchor, more, escaped(text));
-}
-
 std::string line_svg(const std::string& places, const ChartLine& line) {
     return fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{}/>"
                        "\n",
@@ -115,17 +95,17 @@ std::string axes_svg(const Frame& frame, const ChartText& text) {
     };
     for (const double v : frame.x.ticks()) {
         rule(frame.at_x(v), kTop, frame.at_x(v), kBottom);
-        out += text_at(frame.at_x(v), kBottom + 20.0, "middle", short_number(v));
+        out += svg_text(frame.at_x(v), kBottom + 20.0, "middle", short_number(v));
     }
     for (const double v : frame.y.ticks()) {
         rule(kLeft, frame.at_y(v), kRight, frame.at_y(v));
-        out += text_at(kLeft - 8.0, frame.at_y(v) + 4.0, "end", short_number(v));
+        out += svg_text(kLeft - 8.0, frame.at_y(v) + 4.0, "end", short_number(v));
     }
-    out += text_at(0.5 * (kLeft + kRight), 28.0, "middle", text.title, " font-size=\"16\"");
-    out += text_at(0.5 * (kLeft + kRight), kBottom + 48.0, "middle", text.x);
+    out += svg_text(0.5 * (kLeft + kRight), 28.0, "middle", text.title, "font-size=\"16\"");
+    out += svg_text(0.5 * (kLeft + kRight), kBottom + 48.0, "middle", text.x);
     const double middle = 0.5 * (kTop + kBottom);
-    out += text_at(22.0, middle, "middle", text.y,
-                   fmt::format(" transform=\"rotate(-90 22 {:.1f})\"", middle));
+    out += svg_text(22.0, middle, "middle", text.y,
+                    fmt::format("transform=\"rotate(-90 22 {:.1f})\"", middle));
     return out;
 }
 
@@ -133,11 +113,7 @@ std::string axes_svg(const Frame& frame, const ChartText& text) {
 
 std::string log_log_svg(const ChartText& text, std::span<const ChartLine> lines) {
     const Frame frame = frame_of(lines);
-    std::string out = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} "
-        "{1}\" font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" "
-        "fill=\"white\"/>\n",
-        kWidth, kHeight);
+    std::string out = svg_sheet(kWidth, kHeight, 13);
     out += axes_svg(frame, text);
     double legend_y = kTop + 10.0;
     for (const ChartLine& line : lines) {
@@ -154,7 +130,7 @@ std::string log_log_svg(const ChartText& text, std::span<const ChartLine> lines)
         out += line_svg(fmt::format("{:.1f},{:.1f} {:.1f},{:.1f}", kRight + 16.0, legend_y,
                                     kRight + 46.0, legend_y),
                         line);
-        out += text_at(kRight + 52.0, legend_y + 4.0, "start", line.name);
+        out += svg_text(kRight + 52.0, legend_y + 4.0, "start", line.name);
         legend_y += 20.0;
     }
     return out + "</svg>\n";
