@@ -19,7 +19,7 @@ void add_failures_study(CLI::App& study, int& exit_code) {
     CLI::App* c = study.add_subcommand("failures", "Where contact methods fail, and ours must not");
     c->add_option("--scenes", a->options.scenes, "F1 .. ; without it all");
     c->add_option("--seed", a->options.seed, "Of random walks and crossings");
-    c->add_option("--out", a->out, "Folder for CSV and page")->required();
+    c->add_option("--out", a->out, "Folder for CSV, page and picture")->required();
     c->callback([a, &exit_code] {
         const std::vector<FailureRow> rows = run_failures_study(a->options);
         write_failures_study(a->options, rows, a->out);

@@ -2,9 +2,12 @@
 
 #include "sim/io/files.h"
 #include "sim/study/failure_bench.h"
+#include "sim/study/failures_chart.h"
+#include "sim/study/machine.h"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <stdexcept>
 
 namespace sim {
@@ -82,11 +85,18 @@ void write_failures_study(const FailureOptions& options, const std::vector<Failu
     std::filesystem::create_directories(out);
     std::string csv = "scene,method,quantity,measured,bound,near,tolerance,wrong_expected,passed,"
                       "margin\n";
+    const std::array caption{
+        std::string("Gate: the bound that theory gives for a right method, in the unit of the "
+                    "check. Each check with its value: failures.md, failures.csv."),
+        std::string("Reference: closed forms of each scene (sim/study/failure_*.cpp); brute force "
+                    "for depths (F17); the tissue stepped in every tick for couplings (F18)."),
+        fmt::format("Seed {}. Machine: {}; no time is measured.", options.seed, machine())};
     std::string page = fmt::format(
-        "# Failure scenes\n\nEach contact method in scenes where methods are known to fail; seed "
-        "{}. \"fails as known\": the published weakness shows where theory says, \"right\": it "
-        "stays within the bound. ~: theory's value, within the tolerance.\n",
-        options.seed);
+        "# Failure scenes\n\nEach contact method in scenes where methods are known to fail. "
+        "\"fails as known\": the published weakness shows where theory says, \"right\": it "
+        "stays within the bound. ~: theory's value, within the tolerance.\n\n{}\n\n"
+        "![Every method in every scene](failures.svg)\n",
+        fmt::join(caption, "\n"));
     std::string scene;
     for (const FailureRow& r : rows) {
         csv += fmt::format("{},{},\"{}\",{:.9g},{:.9g},{},{:.4g},{},{},{:.4g}\n", r.scene, r.method,
@@ -106,6 +116,10 @@ void write_failures_study(const FailureOptions& options, const std::vector<Failu
     }
     write_text(out / "failures.csv", csv);
     write_text(out / "failures.md", page);
+    std::vector<FailureScene> scenes;
+    for (const Group& group : kGroups)
+        scenes.push_back({group.scene, group.about});
+    write_text(out / "failures.svg", failures_svg(scenes, rows, caption));
 }
 
 } // namespace sim

@@ -51,7 +51,7 @@ struct FailureOptions {
 /// there. Deterministic for a seed.
 std::vector<FailureRow> run_failures_study(const FailureOptions& options);
 
-/// failures.csv and failures.md. Throws if they cannot be written.
+/// failures.csv, failures.md and the picture failures.svg. Throws if they cannot be written.
 void write_failures_study(const FailureOptions& options, const std::vector<FailureRow>& rows,
                           const std::filesystem::path& out);
 
