@@ -81,23 +81,33 @@ void step_virtual_proxy(const CollisionIndex& index, const MeshView& still, cons
     const double hover_m = hover_gap_m(state.proxy_m, in.radius_m);
 
     const bool slid = state.sliding;
-    state.sliding = state.touching = false;
+    state.sliding = false;
+    bool told = false; // the contacts are those of where the proxy is
     for (int subgoal = 0; subgoal < kMostSubgoals; ++subgoal) {
         const TouchPlanes touch = planes_about(index, mesh, in.radius_m, hover_m, state);
+        told = true;
         const PlaneSolution nearest =
             nearest_in_planes(std::span(touch.plane).first(touch.planes), in.device_m);
         if (!nearest.feasible)
             break; // held from all sides: it stays
-        state.touching = nearest.actives > 0;
+        const bool held = nearest.actives > 0;
         const dvec3 subgoal_m =
-            state.touching ? with_friction(in, nearest.place_m, slid, state) : nearest.place_m;
-        if (state.touching && glm::length(subgoal_m - state.proxy_m) <= hover_m)
+            held ? with_friction(in, nearest.place_m, slid, state) : nearest.place_m;
+        if (held && glm::length(subgoal_m - state.proxy_m) <= hover_m)
             break;
-        if (!move(index, mesh, in.radius_m, subgoal_m, state) && !state.touching)
+        told = false;
+        if (!move(index, mesh, in.radius_m, subgoal_m, state) && !held)
             break; // at the device
     }
+    // What held it back last does not matter: round an edge it goes in turns along a plane and,
+    // as none is near there, straight at the device, and the last subgoal may be of either kind.
+    state.touching = state.proxy_m != in.device_m;
+    if (!state.touching)
+        state.contacts = 0;
+    else if (!told)
+        planes_about(index, mesh, in.radius_m, hover_m, state);
     state.sliding = state.sliding && state.touching;
-    state.force_n = state.touching ? in.stiffness_npm * (state.proxy_m - in.device_m) : dvec3{0.0};
+    state.force_n = in.stiffness_npm * (state.proxy_m - in.device_m);
 }
 
 } // namespace haptics

@@ -12,7 +12,9 @@
 
 namespace haptics {
 
-/// F = k (proxy - device). The ball's radius must be above 0: without one, no force. In the
+/// F = k (proxy - device) in every tick, whatever keeps the proxy from the device, also that the
+/// steps ran out; `touching` says that something does. The ball's radius must be above 0: without
+/// one, no force. In the
 /// configuration space of its centre the surface is everything within a radius of the mesh; a step
 /// there is a swept ball (section 3). Where it touches, each contact is a plane, and the next
 /// subgoal the point nearest to the device in front of all (eq. 1), solved exactly (plane_qp.h).

@@ -22,6 +22,23 @@ Bench with_ball(Bench b) {
     return b;
 }
 
+/// The edge of a table: its top z = 0 for x < 0, its side x = 0 for z < 0.
+Bench table() {
+    Bench b;
+    b.quad({-0.1, -0.1, 0}, {0, -0.1, 0}, {0, 0.1, 0}, {-0.1, 0.1, 0});
+    b.quad({0, -0.1, 0}, {0, -0.1, -0.1}, {0, 0.1, -0.1}, {0, 0.1, 0});
+    return b;
+}
+
+/// Whatever keeps the proxy from the device, the force is the spring between them, and nothing if
+/// it is there.
+bool force_is_the_spring(const Bench& b) {
+    const dvec3 lag_m = b.state.proxy_m - b.input.device_m;
+    return b.state.force_n == b.input.stiffness_npm * lag_m &&
+           b.state.touching == (lag_m != dvec3{0.0}) &&
+           (b.state.touching || (!b.state.sliding && b.state.contacts == 0));
+}
+
 } // namespace
 
 TEST_CASE("virtual proxy: on a plane F = k d, d from the ball's lowest point") {
@@ -57,10 +74,7 @@ TEST_CASE("virtual proxy: in a cube corner it is the exact nearest point, in one
 }
 
 TEST_CASE("virtual proxy: pressed on an edge the ball rests on it, and rolls round it") {
-    Bench b; // the edge of a table
-    b.quad({-0.1, -0.1, 0}, {0, -0.1, 0}, {0, 0.1, 0}, {-0.1, 0.1, 0});
-    b.quad({0, -0.1, 0}, {0, -0.1, -0.1}, {0, 0.1, -0.1}, {0, 0.1, 0});
-    b = with_ball(b);
+    Bench b = with_ball(table());
     b.lead(step_virtual_proxy, {-1e-2, 0, 2e-3});
     for (int i = 0; i <= 400; ++i) { // past the edge, 0.3 mm deep, down the side
         const double s = -5e-3 + 25e-6 * i;
@@ -72,9 +86,47 @@ TEST_CASE("virtual proxy: pressed on an edge the ball rests on it, and rolls rou
         REQUIRE(std::abs(off_m - kRadius_m) < 2e-8);
         // nothing but what the surface pushes
         const dvec3 out = p - dvec3{std::min(p.x, 0.0), 0, std::min(p.z, 0.0)};
+        CHECK(force_is_the_spring(b));
         if (b.state.touching)
             CHECK(glm::length(glm::cross(b.state.force_n, out / kRadius_m)) < 2e-3);
     }
+}
+
+TEST_CASE("virtual proxy: dragged over an edge the force never lets go, however far it lags") {
+    for (const double deep_m : {0.3e-3, 0.7e-3, 0.9e-3, 1.5e-3})
+        for (const double step_m : {1e-5, 5e-5, 2e-4}) {
+            CAPTURE(deep_m);
+            CAPTURE(step_m);
+            Bench b = with_ball(table());
+            b.lead(step_virtual_proxy, {-1e-2, 0, 2e-3});
+            for (int i = 0; i < static_cast<int>(7e-3 / step_m); ++i) {
+                const dvec3 device_m{-5e-3 + step_m * i, 0, kRadius_m - deep_m};
+                b.lead(step_virtual_proxy, device_m);
+                CHECK(force_is_the_spring(b));
+                if (b.state.touching)
+                    CHECK(b.state.contacts > 0);
+                // the ball cannot be nearer to the device than the device's own depth
+                const dvec3 out_m{std::max(device_m.x, 0.0), 0, std::max(device_m.z, 0.0)};
+                const double in_m = std::min(-device_m.z, -device_m.x);
+                const double depth_m = kRadius_m - (in_m > 0.0 ? -in_m : glm::length(out_m));
+                CHECK(glm::length(b.state.force_n) >=
+                      b.input.stiffness_npm * depth_m * (1.0 - 1e-9));
+            }
+        }
+}
+
+TEST_CASE("virtual proxy: held from all sides it stays, and pulls") {
+    // two walls that have closed in on the ball: no place is a radius off both
+    Bench b;
+    b.quad({0.9e-3, -0.1, -0.1}, {0.9e-3, 0.1, -0.1}, {0.9e-3, 0.1, 0.1}, {0.9e-3, -0.1, 0.1});
+    b.quad({-0.9e-3, -0.1, -0.1}, {-0.9e-3, -0.1, 0.1}, {-0.9e-3, 0.1, 0.1}, {-0.9e-3, 0.1, -0.1});
+    b = with_ball(b);
+    b.lead(step_virtual_proxy, {0, 0, 0});
+    const dvec3 kept_m = b.state.proxy_m;
+    b.lead(step_virtual_proxy, {1e-3, 0, 2e-3});
+    CHECK(b.state.proxy_m == kept_m);
+    CHECK(b.state.touching);
+    CHECK(force_is_the_spring(b));
 }
 
 TEST_CASE("virtual proxy: never gets into a crumpled ball, nor nearer than its radius") {
@@ -86,6 +138,7 @@ TEST_CASE("virtual proxy: never gets into a crumpled ball, nor nearer than its r
         double nearest_m = kRadius_m;
         for (int i = 0; i < 4000; ++i) {
             touched += b.lead(step_virtual_proxy, hand.next()).touching;
+            CHECK(force_is_the_spring(b));
             inside_m = std::max(inside_m, proxy_bench::inside_m(b, b.state.proxy_m));
             const auto skin =
                 haptics::closest_within(b.index, b.mesh(), b.state.proxy_m, kRadius_m);
