@@ -14,6 +14,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 
 namespace haptics {
 
@@ -22,6 +23,9 @@ struct ProxyInput {
     double radius_m = 0.0;    // 0: a point
     double stiffness_npm = 500.0;
     double static_friction = 0.0, dynamic_friction = 0.0; // Coulomb coefficients
+    /// Unit, one for each vertex of the mesh as it is now (vertex_normals.h), for the method that
+    /// shades forces: the virtual proxy. Empty: none does.
+    std::span<const glm::dvec3> vertex_normal{};
 };
 
 /// A place on the mesh that the ball leans on.

@@ -13,9 +13,10 @@
 
 namespace sim {
 
-/// What acts on the ball. "none": the closest-point query alone.
-inline constexpr std::array<std::string_view, 5> kContactNames{"none", "penalty", "god-object",
-                                                               "virtual-proxy", "ours"};
+/// What acts on the ball. "none": the closest-point query alone. "-shaded": with the vertex normals
+/// of the mesh, made anew whenever it moves.
+inline constexpr std::array<std::string_view, 6> kContactNames{
+    "none", "penalty", "god-object", "virtual-proxy", "virtual-proxy-shaded", "ours"};
 
 struct BenchMethod {
     /// To the mesh as it is now.

@@ -5,6 +5,7 @@
 #include "haptics/contact/god_object.h"
 #include "haptics/contact/penalty.h"
 #include "haptics/contact/safe_proxy.h"
+#include "haptics/contact/vertex_normals.h"
 #include "haptics/contact/virtual_proxy.h"
 #include "haptics/device/trocar.h"
 #include "haptics/device/virtual_device.h"
@@ -112,8 +113,11 @@ TEST_CASE("no allocation: every contact method for a ball, on one of many faces"
         b.index = haptics::make_index("ours", b.mesh());
         b.input.radius_m = 1e-3;
         b.input.static_friction = b.input.dynamic_friction = 0.3;
+        std::vector<glm::dvec3> normal(b.vertex.size());
         proxy_bench::Hand hand{std::mt19937_64(1)};
         const int before = allocations;
+        haptics::angle_weighted_normals(b.mesh(), normal); // for those that shade
+        b.input.vertex_normal = normal;
         int touched = 0;
         for (int i = 0; i < 500; ++i)
             touched += b.lead(step, hand.next()).touching;

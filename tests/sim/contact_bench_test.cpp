@@ -120,6 +120,46 @@ TEST_CASE("contact bench: ours does no wrong, at rest and on what breathes") {
                 }
 }
 
+TEST_CASE("contact bench: the virtual proxy does no wrong at rest, shaded or not") {
+    for (const char* name : {"organ:1k", "sheet:1k"}) {
+        CAPTURE(name);
+        const auto scene = sim::built_in_scene(name, 2.0, 7, 0.002, {});
+        const auto plain = run(scene, "virtual-proxy"), shaded = run(scene, "virtual-proxy-shaded");
+        CHECK(plain.quality.contact_ticks > 700);
+        CHECK(plain.quality.bad == 0);
+        CHECK(shaded.quality.bad == 0);
+        int differ = 0;
+        for (std::size_t i = 0; i < plain.tick.size(); ++i)
+            differ += plain.tick[i].force_n != shaded.tick[i].force_n;
+        CHECK(differ > 700);
+    }
+}
+
+TEST_CASE("contact bench: shading goes with a mesh that was refitted") {
+    const auto scene = sim::built_in_scene("organ:1k", 0.5, 7, 0.002, {});
+    const auto turned = [](const dvec3& p) { return dvec3{-p.y, p.x, p.z}; };
+    std::vector<dvec3> turned_m;
+    for (const dvec3& v : scene.work.rest_m)
+        turned_m.push_back(turned(v));
+    const haptics::MeshView still{scene.work.rest_m, scene.work.triangle, {}};
+    const haptics::MeshView moved{turned_m, scene.work.triangle, {}};
+    auto one = sim::make_bench_method("ours", "virtual-proxy-shaded", still);
+    auto two = sim::make_bench_method("ours", "virtual-proxy-shaded", still);
+    two.refit(moved);
+    haptics::ProxyInput input{.radius_m = 0.002};
+    haptics::ProxyState here, there;
+    int touched = 0;
+    for (const dvec3& device_m : scene.path_m) {
+        input.device_m = device_m;
+        one.step(still, input, here);
+        input.device_m = turned(device_m);
+        two.step(moved, input, there);
+        touched += here.touching;
+        CHECK(glm::length(turned(here.force_n) - there.force_n) < 1e-5); // a hover, at 500 N/m
+    }
+    CHECK(touched > 100);
+}
+
 TEST_CASE("contact bench: the same run gives the same forces to the bit") {
     const auto scene = sim::built_in_scene("organ:1k", 1.0, 5, 0.002, {0.002, sim::Wave::radial});
     const auto one = run(scene, "virtual-proxy"), two = run(scene, "virtual-proxy");
