@@ -1,6 +1,6 @@
 #include "haptics/rigid/surface_query.h"
 
-#include "haptics/rigid/triangle_nearest.h"
+#include "haptics/collision/triangle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -102,10 +102,10 @@ NearestPoint nearest_point(const RigidSurface& s, const dvec3& place_m) {
     NearestPoint best{.distance_m = std::numeric_limits<double>::infinity()};
     for (std::uint32_t t = 0; t < s.triangle.size(); ++t) {
         const auto [a, b, c] = s.triangle[t];
-        const dvec3 q = nearest_on_triangle(s.vertex_m[a], s.vertex_m[b], s.vertex_m[c], place_m);
-        const double distance_m = glm::length(q - place_m);
-        if (distance_m < best.distance_m)
-            best = {q, distance_m, t};
+        const TrianglePoint q =
+            nearest_on_triangle({s.vertex_m[a], s.vertex_m[b], s.vertex_m[c]}, place_m);
+        if (const double distance_m = std::sqrt(q.distance2_m2); distance_m < best.distance_m)
+            best = {q.place_m, distance_m, t};
     }
     return best;
 }

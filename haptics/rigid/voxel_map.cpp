@@ -1,6 +1,6 @@
 #include "haptics/rigid/voxel_map.h"
 
-#include "haptics/rigid/triangle_nearest.h"
+#include "haptics/collision/triangle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,8 +42,8 @@ class Builder {
     }
 
     void offer(std::size_t node, const dvec3& at_m, std::uint32_t t) {
-        const auto [a, b, c] = corners(t);
-        const auto d = static_cast<float>(glm::length(nearest_on_triangle(a, b, c, at_m) - at_m));
+        const auto d =
+            static_cast<float>(std::sqrt(nearest_on_triangle(corners(t), at_m).distance2_m2));
         if (nearest_[node] == kRim || d < map_.distance_m[node]) {
             nearest_[node] = t;
             map_.distance_m[node] = d;

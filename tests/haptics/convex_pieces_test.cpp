@@ -125,3 +125,21 @@ TEST_CASE("surface: inside, outside and the distance of a sphere") {
               doctest::Approx(std::abs(r - 0.01)).epsilon(0.02).scale(5e-3));
     }
 }
+
+TEST_CASE("surface: the distance of a sliver is as exact as any") {
+    // at a height over a place inside; corners are rounded, by some bits of a coordinate
+    RandomPieces random(62);
+    for (const double thin : {1e-3, 1e-6, 1e-9})
+        for (int i = 0; i < 200; ++i) {
+            const glm::dmat3 turn = random.rotation();
+            const dvec3 a = 0.1 * random.in_ball(), along = 0.1 * turn[0],
+                        across = 0.03 * turn[0] + 0.1 * thin * turn[1];
+            const std::vector<dvec3> vertex{a, a + along, a + across};
+            const RigidSurface sliver =
+                haptics::make_surface("sliver", vertex, Triangles{{0, 1, 2}});
+            const double high_m = random.number(0.0, 0.02);
+            const dvec3 place_m = a + random.number(0.0, 0.5) * along +
+                                  random.number(0.0, 0.5) * across + high_m * turn[2];
+            CHECK(std::abs(haptics::nearest_point(sliver, place_m).distance_m - high_m) < 1e-15);
+        }
+}
