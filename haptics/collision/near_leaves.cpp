@@ -43,12 +43,12 @@ int leaves_of_ring(const WideRing& ring, const Asked& asked, float reach, Leaves
     int count = 0;
     for (std::uint32_t eights = eights_within(ring, asked.place.data(), reach2); eights != 0;
          eights &= eights - 1) {
-        const int first = std::countr_zero(eights) * kWidth;
-        child_distance2(RingRows{ring, first}, true, asked.place.data(), reach2, distance2.data());
+        const int eight = std::countr_zero(eights), first = eight * kWidth;
+        child_distance2(RingRows{ring, eight}, true, asked.place.data(), reach2, distance2.data());
         for (int lane = 0; lane < kWidth; lane += static_cast<int>(hn::Lanes(d))) {
             const auto met = hn::Le(hn::Load(d, distance2.data() + lane), hn::Set(d, reach2));
             count += pack(hn::And(met, hn::FirstN(d, std::max(0, ring.leaves - first - lane))),
-                          ring.leaf.data() + first + lane, out.data() + count);
+                          ring.eight[eight].leaf.data() + lane, out.data() + count);
         }
     }
     return count;
@@ -102,13 +102,11 @@ HWY_INLINE float make_planes(const WideTree::Leaf& leaf, const View& view,
 }
 
 // Puts a leaf among those near if it is. False: no room for it.
-HWY_INLINE bool put(const WideTree::Leaf& leaf, const WideTree::Members& member, const View& view,
-                    float reach, NearLeaves& out) {
+HWY_INLINE bool put(const WideTree::Leaf& leaf, const View& view, float reach, NearLeaves& out) {
     if (out.count == NearLeaves::kRoom)
         return false;
     const float least = make_planes(leaf, view, out.plane[out.count]);
     out.leaf[out.count] = &leaf;
-    out.member[out.count] = &member;
     out.least_of_leaf[out.count] = least;
     out.count += least <= reach; // it could go either way: a branch would be guessed wrong often
     return true;
@@ -127,7 +125,7 @@ bool near_of_tree(const WideTree& tree, const glm::dvec3& centre_m, double reach
     const View view = view_from(out);
     bool room = true;
     const auto look = [&](std::uint32_t at) {
-        room = room && put(tree.leaf[at], tree.member[at], view, reach, out);
+        room = room && put(tree.leaf[at], view, reach, out);
     };
     if (holds(ring, asked, reach) || (make_ring(ring, asked, reach) && holds(ring, asked, reach))) {
         Leaves leaf;
@@ -145,7 +143,7 @@ bool near_of_tree(const WideTree& tree, const glm::dvec3& centre_m, double reach
 void put_made(int made, NearLeaves& out) {
     const View view = view_from(out);
     for (int i = 0; i < made; ++i)
-        put(out.made[i], out.made_of[i], view, kFar, out);
+        put(out.made[i], view, kFar, out);
 }
 
 // The two ends of a path, and what is to be kept off it.
@@ -249,7 +247,7 @@ bool make_leaves(const Method& method, const MeshView& mesh, const glm::dvec3& c
     Reach reach{centre_m, centre_m, reach_m};
     visit(method, reach, [&](std::uint32_t t) {
         for (int i = 0; i < found; ++i)
-            if (out.made_of[i / NearLeaves::kWidth].triangle[i % NearLeaves::kWidth] == t)
+            if (out.made[i / NearLeaves::kWidth].triangle[i % NearLeaves::kWidth] == t)
                 return; // a method may visit a triangle twice
         const TriangleCorners corner = mesh.corners(t);
         if (!(nearest_on_triangle(corner, centre_m).distance2_m2 <= reach_m * reach_m))
@@ -258,7 +256,7 @@ bool make_leaves(const Method& method, const MeshView& mesh, const glm::dvec3& c
             room = false;
             return;
         }
-        WideTree::Members& of = out.made_of[found / NearLeaves::kWidth];
+        WideTree::Leaf& of = out.made[found / NearLeaves::kWidth];
         if (found % NearLeaves::kWidth == 0)
             of.triangle.fill(WideTree::kNothing);
         of.triangle[found % NearLeaves::kWidth] = t;
@@ -276,8 +274,7 @@ bool make_leaves(const Method& method, const MeshView& mesh, const glm::dvec3& c
         if (lane == 0)
             std::fill_n(&leaf.corner[0][0][0], 9 * NearLeaves::kWidth,
                         std::numeric_limits<float>::quiet_NaN());
-        const TriangleCorners corner =
-            mesh.corners(out.made_of[i / NearLeaves::kWidth].triangle[lane]);
+        const TriangleCorners corner = mesh.corners(leaf.triangle[lane]);
         for (int k = 0; k < 3; ++k)
             for (int axis = 0; axis < 3; ++axis)
                 leaf.corner[k][axis][lane] =

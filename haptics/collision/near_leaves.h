@@ -30,7 +30,6 @@ struct NearLeaves { // not initialised: there is room for many
     double scale_pm = 1.0; // the leaves' frame: (metres - origin) * scale
     MeshView mesh{};
     std::array<const WideTree::Leaf*, kRoom> leaf;
-    std::array<const WideTree::Members*, kRoom> member;
     /// Of each triangle a plane that it is behind, across the direction from its nearest point to
     /// the centre; as seen from the centre, in that scale, for eight: normal x y z, offset. A lane
     /// without a triangle: minus infinity.
@@ -40,14 +39,13 @@ struct NearLeaves { // not initialised: there is room for many
     // leaves of a method that has none: made as they are found
     static constexpr int kMade = 32;
     std::array<WideTree::Leaf, kMade> made;
-    std::array<WideTree::Members, kMade> made_of;
 
     // A place is leaf * kWidth + lane.
     std::uint32_t triangle(std::uint32_t place) const noexcept {
-        return member[place / kWidth]->triangle[place % kWidth];
+        return leaf[place / kWidth]->triangle[place % kWidth];
     }
     TriangleCorners corner(std::uint32_t place) const noexcept {
-        const auto [a, b, c] = member[place / kWidth]->vertex[place % kWidth];
+        const auto [a, b, c] = leaf[place / kWidth]->vertex[place % kWidth];
         return {mesh.vertex_m[a], mesh.vertex_m[b], mesh.vertex_m[c]};
     }
     float least(std::uint32_t place) const noexcept {

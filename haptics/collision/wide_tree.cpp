@@ -60,21 +60,19 @@ struct Builder {
     }
 
     std::uint32_t add_leaf(const Run& run, std::uint32_t parent_lane) {
-        WideTree::Members members;
-        members.triangle.fill(WideTree::kNothing);
-        members.vertex.fill({0, 0, 0});
+        WideTree::Leaf& leaf = tree.leaf.emplace_back();
+        leaf.triangle.fill(WideTree::kNothing);
+        leaf.vertex.fill({0, 0, 0});
         auto& places = tree.place_of.emplace_back();
         for (auto& corner : places)
             corner.fill(0);
         for (std::uint32_t i = 0; i < run.count; ++i) {
-            members.triangle[i] = order[run.first + i];
-            members.vertex[i] = mesh.triangle[members.triangle[i]];
+            leaf.triangle[i] = order[run.first + i];
+            leaf.vertex[i] = mesh.triangle[leaf.triangle[i]];
             for (int corner = 0; corner < 3; ++corner)
-                places[corner][i] = place_of(members.vertex[i][corner]);
+                places[corner][i] = place_of(leaf.vertex[i][corner]);
         }
         tree.parent_lane.push_back(parent_lane);
-        tree.member.push_back(members);
-        tree.leaf.emplace_back();
         return static_cast<std::uint32_t>(tree.leaf.size() - 1) | WideTree::kLeafBit;
     }
 

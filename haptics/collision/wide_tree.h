@@ -39,6 +39,10 @@ struct WideTree {
     };
     struct alignas(32) Leaf {
         float corner[3][3][kWidth]; // [corner][axis][lane]; lane without a triangle: not a number
+        // beside them, because what is fetched together should lie together: what the last word in
+        // double needs
+        std::array<std::uint32_t, kWidth> triangle; // kNothing: lane without one
+        std::array<Corners, kWidth> vertex;
     };
     /// Skin is flat: of each leaf, a slab that holds it, across the mean normal. Boxes of skin that
     /// lies askew are thick; with the slab, a leaf beside the foot is known to be far. In the order
@@ -47,16 +51,9 @@ struct WideTree {
         float normal[3][kWidth];
         float low[kWidth], high[kWidth]; // along the normal
     };
-    /// Of each leaf, what the last word in double needs.
-    struct Members {
-        std::array<std::uint32_t, kWidth> triangle; // kNothing: lane without one
-        std::array<Corners, kWidth> vertex;
-    };
-
     std::vector<Node> node; // the root first, parents before children
     std::vector<Leaf> leaf;
     std::vector<Slabs> slabs; // of each node
-    std::vector<Members> member;
     // for refit: vertices in the tree's frame, each where the first leaf that has it needs it
     std::vector<std::array<float, 4>> place;
     std::vector<std::uint32_t> vertex_of_place;
@@ -84,16 +81,20 @@ struct WideRing {
     float disc2 = 1e-3f; // square of the radius of the disc of skin that the next ring holds
     std::array<float, 3> centre{};                  // p0, tree frame
     std::array<float, 3> last_place{}, last_foot{}; // asked about, and answered; tree frame
-    std::uint32_t last_leaf = 0;                    // where the nearest was
+    std::uint32_t last_leaf = 0, last_eight = 0;    // where the nearest was
     std::uint32_t made = 0, asked = 0;              // counters, for the bench
-    /// Rows with a leaf in each column: box low x y z, high x y z, slab normal x y z, low, high.
-    static constexpr int kRows = 11;
-    alignas(64) std::array<std::array<float, kRoom + WideTree::kWidth>, kRows> row{};
-    std::array<std::uint32_t, kRoom + WideTree::kWidth> leaf{};
-    /// Boxes around each eight columns, low x y z and high x y z: the first eight boxes to ask.
+    /// Boxes around each eight leaves, low x y z and high x y z: the first eight boxes to ask.
     static constexpr int kEights = kRoom / WideTree::kWidth;
     static_assert(kEights == WideTree::kWidth);
     alignas(64) std::array<std::array<float, kEights>, 6> around{};
+    /// Side by side in memory: where caches were driven out, each line fetched is felt. Rows: box
+    /// low x y z, high x y z, slab normal x y z, low, high.
+    static constexpr int kRows = 11;
+    struct alignas(64) Eight {
+        std::array<std::array<float, WideTree::kWidth>, kRows> row{};
+        std::array<std::uint32_t, WideTree::kWidth> leaf{};
+    };
+    std::array<Eight, kEights> eight{};
 };
 
 /// Setup. Indices and vertices must be good (make_index checks). The same mesh gives the same tree.
@@ -154,7 +155,7 @@ template <class Look> void visit(const WideTree& tree, Reach& reach, Look&& look
             std::uint32_t met = tree.moving ? (1u << WideTree::kWidth) - 1u
                                             : wide_detail::triangles_met(tree.leaf[leaf], now);
             for (; met != 0; met &= met - 1) {
-                const std::uint32_t t = tree.member[leaf].triangle[std::countr_zero(met)];
+                const std::uint32_t t = tree.leaf[leaf].triangle[std::countr_zero(met)];
                 if (t != WideTree::kNothing)
                     look(t);
             }

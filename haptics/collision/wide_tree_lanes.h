@@ -134,8 +134,8 @@ struct NodeRows {
 };
 struct RingRows {
     const WideRing& ring;
-    int first;
-    const float* operator()(int row) const { return ring.row[row].data() + first; }
+    int eight;
+    const float* operator()(int row) const { return ring.eight[eight].row[row].data(); }
 };
 
 struct AroundRows {

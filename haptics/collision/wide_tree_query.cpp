@@ -5,6 +5,7 @@
 
 #include <hwy/foreach_target.h> // must come before highway.h
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "haptics/collision/wide_tree_ring.h"
@@ -47,7 +48,7 @@ struct Seen : Asked {
         leaves = kept;
         full = leaves == kRoom;
     }
-    void look(std::uint32_t at) noexcept {
+    HWY_NOINLINE void look(std::uint32_t at) noexcept {
         if (leaves == kRoom)
             make_room();
         if (full)
@@ -97,17 +98,19 @@ void search(Seen& seen) noexcept {
     }
 }
 
-void look_through(const WideRing& ring, Seen& seen) noexcept {
+HWY_NOINLINE void look_through(WideRing& ring, Seen& seen) noexcept {
     alignas(64) std::array<float, kWidth> distance2;
     for (std::uint32_t eights = eights_within(ring, seen.place.data(), seen.limit2); eights != 0;
          eights &= eights - 1) {
-        const int first = std::countr_zero(eights) * kWidth;
+        const int eight = std::countr_zero(eights);
+        ring.last_eight = static_cast<std::uint32_t>(eight);
         for (std::uint32_t met =
-                 leaves_within(ring, first, seen.place.data(), seen.limit2, distance2.data());
+                 leaves_within(ring, eight, seen.place.data(), seen.limit2, distance2.data());
              met != 0; met &= met - 1) {
             const int lane = std::countr_zero(met);
-            if (distance2[lane] <= seen.limit2 && ring.leaf[first + lane] != ring.last_leaf)
-                seen.look(ring.leaf[first + lane]);
+            const std::uint32_t leaf = ring.eight[eight].leaf[lane];
+            if (distance2[lane] <= seen.limit2 && leaf != ring.last_leaf)
+                seen.look(leaf);
         }
     }
 }
@@ -125,9 +128,9 @@ SurfaceHit decide(const Seen& seen, const MeshView& mesh, const glm::dvec3& plac
         for (std::uint32_t near_enough = bits_within(seen.distance2[i].data(), seen.limit2);
              near_enough != 0; near_enough &= near_enough - 1) {
             const int lane = std::countr_zero(near_enough);
-            const WideTree::Members& members = seen.tree.member[seen.leaf[i]];
-            const std::uint32_t t = members.triangle[lane];
-            const auto [a, b, c] = members.vertex[lane];
+            const WideTree::Leaf& leaf = seen.tree.leaf[seen.leaf[i]];
+            const std::uint32_t t = leaf.triangle[lane];
+            const auto [a, b, c] = leaf.vertex[lane];
             const TrianglePoint near = nearest_on_triangle(
                 {mesh.vertex_m[a], mesh.vertex_m[b], mesh.vertex_m[c]}, place_m);
             if (!(near.distance2_m2 < best2 || (near.distance2_m2 == best2 && t < best.triangle)))
@@ -141,6 +144,19 @@ SurfaceHit decide(const Seen& seen, const MeshView& mesh, const glm::dvec3& plac
     return best;
 }
 
+// Asks memory for what the answer will most likely need, all at once: where the caches were driven
+// out since the last tick, it would else come one after the other.
+void fetch(const WideTree& tree, const WideRing& ring) noexcept {
+    const auto lines = [](const auto& of) {
+        const char* at = reinterpret_cast<const char*>(&of);
+        for (std::size_t byte = 0; byte < sizeof(of); byte += 64)
+            hwy::Prefetch(at + byte);
+    };
+    lines(tree.leaf[ring.last_leaf]);
+    lines(ring.around);
+    lines(ring.eight[ring.last_eight]);
+}
+
 SurfaceHit closest(const WideTree& tree, const MeshView& mesh, WideRing& ring,
                    const glm::dvec3& place_m, double radius_m) {
     const glm::dvec3 p = tree.to_tree(place_m);
@@ -148,8 +164,10 @@ SurfaceHit closest(const WideTree& tree, const MeshView& mesh, WideRing& ring,
         return {};
     ++ring.asked;
     const double radius = radius_m * tree.scale_pm;
-    Seen seen{tree, p, radius};
     const bool known = ring.last_leaf < tree.leaf.size();
+    if (known)
+        fetch(tree, ring);
+    Seen seen{tree, p, radius};
     if (known)
         seen.look(ring.last_leaf);
 

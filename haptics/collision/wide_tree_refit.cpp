@@ -107,7 +107,6 @@ HWY_INLINE void put(Node& node, int lane, const Box& box) {
 }
 
 HWY_INLINE Box fill_leaf(WideTree& tree, std::uint32_t at) {
-    const WideTree::Members& members = tree.member[at];
     WideTree::Leaf& leaf = tree.leaf[at];
     Box box = no_box();
     for (int corner = 0; corner < 3; ++corner)
@@ -116,7 +115,7 @@ HWY_INLINE Box fill_leaf(WideTree& tree, std::uint32_t at) {
             for (int i = 0; i < 4; ++i)
                 place[i] = load4(tree.place[tree.place_of[at][corner][lane + i]].data());
             for (int i = 0; i < 4; ++i) {
-                if (members.triangle[lane + i] != WideTree::kNothing)
+                if (leaf.triangle[lane + i] != WideTree::kNothing)
                     add(box, place[i]);
                 else
                     place[i] = set4(std::numeric_limits<float>::quiet_NaN());
@@ -229,7 +228,7 @@ void widen_boxes(WideTree& tree) {
             high[axis] = node.high[axis][in % kWidth];
         }
         Box box{load4(low), load4(high)};
-        for (int i = 0; i < kWidth && tree.member[at].triangle[i] != WideTree::kNothing; ++i)
+        for (int i = 0; i < kWidth && tree.leaf[at].triangle[i] != WideTree::kNothing; ++i)
             for (int corner = 0; corner < 3; ++corner)
                 add(box, load4(tree.place[tree.place_of[at][corner][i]].data()));
         put_leaf(tree, at, box);

@@ -38,22 +38,31 @@ struct Asked {
         : tree(t), place(to_float(p)), slack(static_cast<float>(wide_detail::slack(p))) {}
 };
 
+// The leaves of a ring while it is made: packed as they come, each row of all of them together.
+struct Making {
+    static constexpr int kRoom = WideRing::kRoom + kWidth;
+    int leaves = 0;
+    std::array<std::array<float, kRoom>, WideRing::kRows> row;
+    std::array<std::uint32_t, kRoom> leaf;
+    std::array<float, kRoom> distance2;
+};
+
 // The farther third leaves the ring. Returns its new reach.
-float shrink(WideRing& ring, std::array<float, WideRing::kRoom + kWidth>& distance2) noexcept {
-    std::array<float, WideRing::kRoom + kWidth> order = distance2;
+float shrink(WideRing& ring, Making& making) noexcept {
+    std::array<float, Making::kRoom> order = making.distance2;
     const auto last = order.begin() + 2 * WideRing::kRoom / 3;
-    std::nth_element(order.begin(), last, order.begin() + ring.leaves);
+    std::nth_element(order.begin(), last, order.begin() + making.leaves);
     const float reach = std::min(std::sqrt(*last), std::nextafter(ring.reach, 0.0f));
     int kept = 0;
-    for (int i = 0; i < ring.leaves; ++i) {
-        if (distance2[i] > reach * reach)
+    for (int i = 0; i < making.leaves; ++i) {
+        if (making.distance2[i] > reach * reach)
             continue;
-        for (auto& row : ring.row)
+        for (auto& row : making.row)
             row[kept] = row[i];
-        ring.leaf[kept] = ring.leaf[i];
-        distance2[kept++] = distance2[i];
+        making.leaf[kept] = making.leaf[i];
+        making.distance2[kept++] = making.distance2[i];
     }
-    ring.leaves = kept;
+    making.leaves = kept;
     return ring.reach = reach;
 }
 
@@ -65,8 +74,7 @@ float next_disc2(const WideRing& ring, float height) noexcept {
 }
 
 // Children of a node that are leaves and within the ring's reach join it.
-void join(WideRing& ring, std::array<float, WideRing::kRoom + kWidth>& ring_distance2,
-          const NodeRows& rows, const float* distance2) noexcept {
+void join(float reach, const NodeRows& rows, const float* distance2, Making& making) noexcept {
     const D d;
     const hn::RebindToUnsigned<D> du;
     for (int lane = 0; lane < kWidth; lane += static_cast<int>(hn::Lanes(d))) {
@@ -76,18 +84,18 @@ void join(WideRing& ring, std::array<float, WideRing::kRoom + kWidth>& ring_dist
         const auto leaf =
             hn::And(hn::RebindMask(d, hn::Lt(hn::BitCast(di, child), hn::Zero(di))),
                     hn::RebindMask(d, hn::Ne(child, hn::Set(du, WideTree::kNothing))));
-        const auto mask = hn::And(leaf, hn::Le(far2, hn::Set(d, ring.reach * ring.reach)));
+        const auto mask = hn::And(leaf, hn::Le(far2, hn::Set(d, reach * reach)));
         if (hn::AllFalse(d, mask))
             continue;
         // compressed in a register: straight to memory is microcode on some CPUs
         for (int k = 0; k < WideRing::kRows; ++k)
             hn::StoreU(hn::Compress(hn::LoadU(d, rows(k) + lane), mask), d,
-                       ring.row[k].data() + ring.leaves);
-        hn::StoreU(hn::Compress(far2, mask), d, ring_distance2.data() + ring.leaves);
+                       making.row[k].data() + making.leaves);
+        hn::StoreU(hn::Compress(far2, mask), d, making.distance2.data() + making.leaves);
         hn::StoreU(hn::Compress(hn::AndNot(hn::Set(du, WideTree::kLeafBit), child),
                                 hn::RebindMask(du, mask)),
-                   du, ring.leaf.data() + ring.leaves);
-        ring.leaves += static_cast<int>(hn::CountTrue(d, mask));
+                   du, making.leaf.data() + making.leaves);
+        making.leaves += static_cast<int>(hn::CountTrue(d, mask));
     }
 }
 
@@ -123,16 +131,22 @@ float place_ring(WideRing& ring, const Asked& asked, float bound) noexcept {
     return h;
 }
 
-// The boxes around each eight leaves; where there are none, one that is never met.
-void put_around(WideRing& ring) noexcept {
-    for (int row = 0; row < 6; ++row)
-        for (int eight = 0; eight < WideRing::kEights; ++eight) {
-            const auto first = ring.row[row].begin() + eight * kWidth;
-            const auto last = first + std::clamp(ring.leaves - eight * kWidth, 0, kWidth);
-            ring.around[row][eight] = first == last ? (row < 3 ? kFar : -kFar)
-                                      : row < 3     ? *std::min_element(first, last)
-                                                    : *std::max_element(first, last);
+// Eight by eight, with a box around each eight; where there are none, one that is never met.
+void lay_out(const Making& making, WideRing& ring) noexcept {
+    ring.leaves = making.leaves;
+    for (int eight = 0; eight < WideRing::kEights; ++eight) {
+        const int first = eight * kWidth, many = std::clamp(ring.leaves - first, 0, kWidth);
+        WideRing::Eight& out = ring.eight[eight];
+        std::copy_n(making.leaf.begin() + first, many, out.leaf.begin());
+        for (int row = 0; row < WideRing::kRows; ++row)
+            std::copy_n(making.row[row].begin() + first, many, out.row[row].begin());
+        for (int row = 0; row < 6; ++row) {
+            const auto begin = out.row[row].begin(), end = begin + many;
+            ring.around[row][eight] = many == 0 ? (row < 3 ? kFar : -kFar)
+                                      : row < 3 ? *std::min_element(begin, end)
+                                                : *std::max_element(begin, end);
         }
+    }
 }
 
 // Which eights of a ring come within the root of `limit2`.
@@ -142,21 +156,20 @@ HWY_INLINE std::uint32_t eights_within(const WideRing& ring, const float* place,
     return bits_within(distance2.data(), limit2);
 }
 
-// Of the eight leaves from `first`, those that do; what comes from them is put in `distance2`.
-HWY_INLINE std::uint32_t leaves_within(const WideRing& ring, int first, const float* place,
+// Of the leaves of one eight, those that do; what comes from them is put in `distance2`.
+HWY_INLINE std::uint32_t leaves_within(const WideRing& ring, int eight, const float* place,
                                        float limit2, float* distance2) {
-    child_distance2(RingRows{ring, first}, true, place, limit2, distance2);
-    const int behind = kWidth - std::min(kWidth, ring.leaves - first);
+    child_distance2(RingRows{ring, eight}, true, place, limit2, distance2);
+    const int behind = kWidth - std::min(kWidth, ring.leaves - eight * kWidth);
     return bits_within(distance2, limit2) & (0xffu >> behind);
 }
 
 // All leaves in a ball around the nearest, as large as there is room for. False: no room even
 // for the nearest alone.
-bool make_ring(WideRing& ring, const Asked& asked, float bound) noexcept {
+HWY_NOINLINE bool make_ring(WideRing& ring, const Asked& asked, float bound) noexcept {
     const WideTree& tree = asked.tree;
-    std::array<float, WideRing::kRoom + kWidth> ring_distance2;
+    Making making;
     ring.version = tree.version;
-    ring.leaves = 0;
     const float height = place_ring(ring, asked, bound);
     const float least_reach = bound + distance(asked.place, ring.centre) + 8.0f * asked.slack;
     ++ring.made;
@@ -176,16 +189,16 @@ bool make_ring(WideRing& ring, const Asked& asked, float bound) noexcept {
             if ((child & WideTree::kLeafBit) == 0)
                 stack[top++] = child;
         }
-        join(ring, ring_distance2, rows, distance2.data());
-        while (ring.leaves > WideRing::kRoom - kWidth)
-            if (!(shrink(ring, ring_distance2) > least_reach)) {
+        join(ring.reach, rows, distance2.data(), making);
+        while (making.leaves > WideRing::kRoom - kWidth)
+            if (!(shrink(ring, making) > least_reach)) {
                 ring.reach = 0.0f;
                 ring.disc2 *= 0.1f;
                 return false;
             }
     }
+    lay_out(making, ring);
     ring.disc2 = next_disc2(ring, height);
-    put_around(ring);
     return true;
 }
 
