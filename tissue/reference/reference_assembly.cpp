@@ -1,0 +1,106 @@
+// tissue/reference/reference_assembly.cpp
+// Energy, forces and tangent of a reference body at a state. Called by its Newton; any thread.
+#include "tissue/reference/reference_element.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace tissue {
+namespace {
+
+using glm::dmat3;
+using glm::dvec3;
+
+// K_ab = V G_a . A . G_b
+void add_tangent(const Tangent& A, const ReferencePoint& point,
+                 std::array<dmat3, 55>& blocks) noexcept {
+    const std::array<dvec3, 10>& G = point.gradient_1pm;
+    std::size_t k = 0;
+    for (std::size_t a = 0; a < 10; ++a) {
+        std::array<std::array<double, 9>, 3> half{}; // [component r of a][j of A]
+        for (int r = 0; r < 3; ++r) {
+            for (int j = 0; j < 9; ++j) {
+                half[r][j] = point.volume_m3 *
+                             (A[r][j] * G[a].x + A[3 + r][j] * G[a].y + A[6 + r][j] * G[a].z);
+            }
+        }
+        for (std::size_t b = 0; b <= a; ++b, ++k) {
+            for (int r = 0; r < 3; ++r) {
+                for (int c = 0; c < 3; ++c) {
+                    blocks[k][c][r] +=
+                        half[r][c] * G[b].x + half[r][3 + c] * G[b].y + half[r][6 + c] * G[b].z;
+                }
+            }
+        }
+    }
+}
+
+} // namespace
+
+void linearize_at(const ReferenceModel& model, std::span<const dvec3> moved_m,
+                  ReferenceSystem& system, bool projected) noexcept {
+    std::fill(system.internal_n.begin(), system.internal_n.end(), 0.0);
+    std::fill(system.stiffness.begin(), system.stiffness.end(), 0.0);
+    system.energy_j = 0.0;
+    system.min_j = std::numeric_limits<double>::infinity();
+    for (std::size_t e = 0; e < model.points.size(); ++e) {
+        std::array<dmat3, 55> blocks;
+        blocks.fill(dmat3(0.0));
+        for (const ReferencePoint& point : model.points[e]) {
+            const dmat3 F = deformation_gradient(model, e, point, moved_m);
+            system.min_j = std::min(system.min_j, glm::determinant(F));
+            system.energy_j += point.volume_m3 * energy_density_jpm3(model.elasticity, F);
+            const dmat3 P = point.volume_m3 * piola_stress_pa(model.elasticity, F);
+            for (std::size_t a = 0; a < 10; ++a) {
+                const dvec3 force = P * point.gradient_1pm[a];
+                for (int k = 0; k < 3; ++k)
+                    system.internal_n[3 * model.mesh.tets[e][a] + k] += force[k];
+            }
+            Tangent A = piola_tangent_pa(model.elasticity, F);
+            if (projected)
+                project_positive(A);
+            add_tangent(A, point, blocks);
+        }
+        std::size_t k = 0;
+        for (std::size_t a = 0; a < 10; ++a) {
+            for (std::size_t b = 0; b <= a; ++b, ++k)
+                add_block(model, e, a, b, k, blocks[k], system.stiffness);
+        }
+    }
+}
+
+double energy_at_j(const ReferenceModel& model, std::span<const dvec3> moved_m) noexcept {
+    double sum = 0.0;
+    for (std::size_t e = 0; e < model.points.size(); ++e) {
+        for (const ReferencePoint& point : model.points[e]) {
+            const dmat3 F = deformation_gradient(model, e, point, moved_m);
+            sum += point.volume_m3 * energy_density_jpm3(model.elasticity, F);
+        }
+    }
+    return sum;
+}
+
+void linearize(const ReferenceModel& model, const ReferenceState& state, ReferenceSystem& system,
+               bool projected) {
+    linearize_at(model, displacements_m(model, state.position_m), system, projected);
+}
+
+double elastic_energy_j(const ReferenceModel& model, std::span<const dvec3> position_m) {
+    return energy_at_j(model, displacements_m(model, position_m));
+}
+
+void elastic_forces(const ReferenceModel& model, std::span<const dvec3> position_m,
+                    std::span<dvec3> force_n) {
+    const std::vector<dvec3> moved = displacements_m(model, position_m);
+    std::fill(force_n.begin(), force_n.end(), dvec3{0.0});
+    for (std::size_t e = 0; e < model.points.size(); ++e) {
+        for (const ReferencePoint& point : model.points[e]) {
+            const dmat3 F = deformation_gradient(model, e, point, moved);
+            const dmat3 P = point.volume_m3 * piola_stress_pa(model.elasticity, F);
+            for (std::size_t a = 0; a < 10; ++a)
+                force_n[model.mesh.tets[e][a]] += P * point.gradient_1pm[a];
+        }
+    }
+}
+
+} // namespace tissue

@@ -1,0 +1,241 @@
+// tissue/reference/reference_newton.cpp
+// Newton with a line search on the potential, and the load in parts where that fails. Called by
+// statics and by steps.
+#include "tissue/reference/reference_newton.h"
+
+#include "tissue/reference/reference_element.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tissue {
+namespace {
+
+using glm::dvec3;
+
+double norm(std::span<const double> v) noexcept {
+    double sum = 0.0;
+    for (const double x : v)
+        sum += x * x;
+    return std::sqrt(sum);
+}
+
+double product_of(std::span<const double> a, std::span<const double> b) noexcept {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+// Displacements from rest: `now` where Newton is, `trial` where it looks. The rest per component.
+struct Search {
+    const ReferenceModel& model;
+    ReferenceSystem& system;
+    const NewtonOptions& options;
+    std::span<const double> inertia_npm;
+    std::vector<dvec3> start_m, now_m, trial_m;
+    double volume_m3 = 0.0;
+    std::vector<double> force_n, way_m, inertia_n, residual_n, step_m, product_n;
+    std::vector<double> unknown; // per unknown
+    NewtonReport report;
+
+    Search(const ReferenceModel& m, ReferenceSystem& s, const NewtonOptions& o,
+           std::span<const double> inertia, const std::vector<dvec3>& x)
+        : model(m), system(s), options(o), inertia_npm(inertia), start_m(x), now_m(x), trial_m(x) {
+        for (const auto& tet : m.points) {
+            for (const ReferencePoint& p : tet)
+                volume_m3 += p.volume_m3;
+        }
+        for (auto* v : {&force_n, &way_m, &inertia_n, &residual_n, &step_m, &product_n})
+            v->assign(m.unknown.size(), 0.0);
+        unknown.assign(static_cast<std::size_t>(m.unknowns), 0.0);
+    }
+};
+
+// d and B d at `x`.
+void measure(Search& s, std::span<const dvec3> x) noexcept {
+    for (std::size_t i = 0; i < s.way_m.size(); ++i) {
+        const int k = static_cast<int>(i % 3);
+        s.way_m[i] = x[i / 3][k] - s.start_m[i / 3][k];
+    }
+    if (!s.inertia_npm.empty())
+        multiply(s.model.all, s.inertia_npm, s.way_m, s.inertia_n);
+}
+
+struct Value {
+    double elastic_j, rest_j, noise_j;
+    double sum() const noexcept { return elastic_j + rest_j; }
+};
+
+// Pi at `x`, and how much of it is rounding.
+Value potential_at(Search& s, std::span<const dvec3> x) noexcept {
+    constexpr double kSummed = 1e-13; // of each of the three parts
+    constexpr double kPoint = 1e-15;  // of mu: neo-Hooke's energy is a difference of such numbers
+    const double elastic_j = energy_at_j(s.model, x);
+    measure(s, x);
+    const double kinetic_j = 0.5 * product_of(s.way_m, s.inertia_n);
+    const double work_j = product_of(s.force_n, s.way_m);
+    return {elastic_j, kinetic_j - work_j,
+            kSummed * (elastic_j + kinetic_j + std::abs(work_j)) +
+                kPoint * s.model.elasticity.mu_pa * s.volume_m3};
+}
+
+// Residual at `now`; relative to all forces that take part.
+double relative_residual(Search& s) noexcept {
+    measure(s, s.now_m);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < s.residual_n.size(); ++i) {
+        s.residual_n[i] = s.force_n[i] - s.system.internal_n[i] - s.inertia_n[i];
+        if (s.model.unknown[i] >= 0)
+            sum += s.residual_n[i] * s.residual_n[i];
+    }
+    const double size = norm(s.force_n) + norm(s.system.internal_n) + norm(s.inertia_n);
+    return size > 0.0 ? std::sqrt(sum) / size : 0.0;
+}
+
+// K + B of the unknowns; with projected tangents if it is not positive definite otherwise.
+bool factor_tangent(Search& s) noexcept {
+    const auto attempt = [&] {
+        for (std::size_t k = 0; k < s.system.matrix.size(); ++k) {
+            const std::int32_t from = s.model.free_source[k];
+            s.system.matrix[k] =
+                s.system.stiffness[from] + (s.inertia_npm.empty() ? 0.0 : s.inertia_npm[from]);
+        }
+        return s.system.factor.factor(s.system.matrix);
+    };
+    ++s.report.iterations;
+    if (attempt())
+        return true;
+    ++s.report.projected;
+    linearize_at(s.model, s.now_m, s.system, true);
+    return attempt();
+}
+
+// step_m on the unknowns = (K + B)^-1 of residual_n there; 0 on the held components.
+void solve_step(Search& s) noexcept {
+    for (std::size_t i = 0; i < s.residual_n.size(); ++i) {
+        if (s.model.unknown[i] >= 0)
+            s.unknown[s.model.unknown[i]] = s.residual_n[i];
+    }
+    s.system.factor.solve(s.unknown, 1);
+    for (std::size_t i = 0; i < s.step_m.size(); ++i)
+        s.step_m[i] = s.model.unknown[i] >= 0 ? s.unknown[s.model.unknown[i]] : 0.0;
+}
+
+void look_at(Search& s, double share) noexcept {
+    for (std::size_t i = 0; i < s.step_m.size(); ++i) {
+        const int k = static_cast<int>(i % 3);
+        s.trial_m[i / 3][k] = s.now_m[i / 3][k] + share * s.step_m[i];
+    }
+}
+
+enum class Descent { real, within_rounding, none };
+
+// Armijo's rule along step_m.
+Descent go_down(Search& s) noexcept {
+    constexpr double kDescent = 1e-4; // of the promised decrease
+    constexpr int kHalvings = 30;
+    const double slope_j = product_of(s.residual_n, s.step_m); // > 0: positive definite
+    const Value before = potential_at(s, s.now_m);
+    double share = 1.0;
+    for (int k = 0; k < kHalvings; ++k) {
+        look_at(s, share);
+        const double allowed_j = before.noise_j - kDescent * share * slope_j;
+        if (potential_at(s, s.trial_m).sum() - before.sum() <= allowed_j) {
+            std::swap(s.now_m, s.trial_m);
+            return slope_j > before.noise_j ? Descent::real : Descent::within_rounding;
+        }
+        share *= 0.5;
+    }
+    return Descent::none;
+}
+
+// Held components go to `held_m`, the unknowns follow as the tangent says. False if that turns a
+// tetrahedron inside out.
+bool carry_held(Search& s, std::span<const dvec3> held_m) {
+    std::vector<double> way_m(s.way_m.size());
+    for (std::size_t i = 0; i < way_m.size(); ++i) {
+        const int k = static_cast<int>(i % 3);
+        way_m[i] = s.model.unknown[i] < 0 ? held_m[i / 3][k] - s.now_m[i / 3][k] : 0.0;
+    }
+    if (std::all_of(way_m.begin(), way_m.end(), [](double w) { return w == 0.0; }))
+        return true;
+    linearize_at(s.model, s.now_m, s.system, false);
+    if (!factor_tangent(s))
+        return false;
+    multiply(s.model.all, s.system.stiffness, way_m, s.residual_n);
+    if (!s.inertia_npm.empty()) {
+        multiply(s.model.all, s.inertia_npm, way_m, s.product_n);
+        for (std::size_t i = 0; i < s.residual_n.size(); ++i)
+            s.residual_n[i] += s.product_n[i];
+    }
+    for (double& r : s.residual_n)
+        r = -r;
+    solve_step(s);
+    for (std::size_t i = 0; i < way_m.size(); ++i)
+        s.step_m[i] += way_m[i];
+    look_at(s, 1.0);
+    std::swap(s.now_m, s.trial_m);
+    return std::isfinite(energy_at_j(s.model, s.now_m));
+}
+
+// True at an equilibrium: to the tolerance, or to rounding where the tolerance lies below it.
+bool converge(Search& s) noexcept {
+    constexpr double kProgress = 0.5; // a Newton step that is not rounding does far better
+    double last = std::numeric_limits<double>::infinity();
+    Descent descent = Descent::real;
+    for (int i = 0;; ++i) {
+        linearize_at(s.model, s.now_m, s.system, false);
+        const double residual = relative_residual(s);
+        s.report.relative_residual = residual;
+        s.report.energy_j = s.system.energy_j;
+        s.report.min_j = s.system.min_j;
+        if (residual <= s.options.tolerance ||
+            (descent == Descent::within_rounding && residual > kProgress * last)) {
+            return true;
+        }
+        if (i >= s.options.max_iterations || !factor_tangent(s))
+            return false;
+        solve_step(s);
+        descent = go_down(s);
+        if (descent == Descent::none)
+            return false;
+        last = residual;
+    }
+}
+
+} // namespace
+
+NewtonReport find_least(const ReferenceModel& model, const Potential& potential,
+                        std::span<const dvec3> target_m, const NewtonOptions& options,
+                        ReferenceSystem& system, std::vector<dvec3>& moved_m) {
+    Search s(model, system, options, potential.inertia_npm, moved_m);
+    // d = 0 at the start, so that f_int alone is what balances there
+    linearize_at(model, moved_m, system, false);
+    const std::vector<double> force_at_start = system.internal_n;
+    std::vector<dvec3> held_m = moved_m;
+
+    const double least_part = std::ldexp(1.0, -options.max_halvings);
+    double part = 1.0;
+    while (s.report.reached < 1.0 && part >= least_part) {
+        const double share = std::min(1.0, s.report.reached + part);
+        for (std::size_t i = 0; i < s.force_n.size(); ++i)
+            s.force_n[i] = (1.0 - share) * force_at_start[i] + share * potential.force_n[i];
+        for (std::size_t i = 0; i < target_m.size(); ++i)
+            held_m[i] = (1.0 - share) * s.start_m[i] + share * target_m[i];
+        s.now_m = moved_m;
+        if ((target_m.empty() || carry_held(s, held_m)) && converge(s)) {
+            moved_m = s.now_m;
+            s.report.reached = share;
+            part *= 2.0;
+            ++s.report.parts;
+        } else {
+            part *= 0.5;
+        }
+    }
+    s.report.converged = s.report.reached == 1.0 && s.report.relative_residual <= options.tolerance;
+    return s.report;
+}
+
+} // namespace tissue
