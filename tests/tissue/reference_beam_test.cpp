@@ -75,7 +75,64 @@ dvec3 tip_m(const reference_bodies::Solved& s) {
     return {};
 }
 
+// Small-deflection cantilever 100 x 20 x 20 mm, E 10 kPa, nu, 10 mN of uniform shear on the end:
+// mean deflection of the end face, mm.
+double cantilever_mm(const std::array<int, 3>& cells, double poisson) {
+    const auto mesh = tissue::quadratic_mesh(tissue::box_mesh({0.1, 0.02, 0.02}, cells));
+    const auto end = reference_bodies::face_areas_m2(mesh, [](auto x) { return x.x > 0.1 - 1e-9; });
+    std::vector<dvec3> force;
+    for (const double area : end)
+        force.push_back({0, 0, 10e-3 * area / (0.02 * 0.02)});
+    const auto s = reference_bodies::solve(
+        mesh, elastic(10e3, poisson), Law::small_strain,
+        flags(mesh, [](auto x) { return x.x < 1e-9 ? kHeld : 0; }), {force, {}});
+    CHECK(s.report.converged);
+    return reference_bodies::mean_displacement_m(mesh, s.state.position_m, end).z * 1e3;
+}
+
+// Cook's membrane, corners (0,0) (48,44) (48,60) (0,44), thickness 10, E = 1, x = 0 clamped, total
+// shear 10 on x = 48: deflection of the middle of the loaded edge.
+double cook(const std::array<int, 3>& cells, double poisson) {
+    auto corners = tissue::box_mesh({48, 1, 10}, cells);
+    for (dvec3& x : corners.rest_m) {
+        const double low = 44 * x.x / 48, high = 44 + 16 * x.x / 48;
+        x.y = low + x.y * (high - low);
+    }
+    const auto mesh = tissue::quadratic_mesh(corners);
+    const auto end = reference_bodies::face_areas_m2(mesh, [](auto x) { return x.x > 48 - 1e-6; });
+    std::vector<dvec3> force;
+    for (const double area : end)
+        force.push_back({0, 10 * area / (16 * 10), 0});
+    const auto s = reference_bodies::solve(
+        mesh, elastic(1, poisson), Law::small_strain,
+        flags(mesh, [](auto x) { return x.x < 1e-6 ? kHeld : 0; }), {force, {}});
+    CHECK(s.report.converged);
+    for (std::size_t i = 0; i < mesh.rest_m.size(); ++i) {
+        if (glm::length(mesh.rest_m[i] - dvec3(48, 52, 5)) < 1e-6)
+            return s.state.position_m[i].y - 52;
+    }
+    return 0.0;
+}
+
 } // namespace
+
+TEST_CASE("a clamped cantilever bends as other quadratic tetrahedra do, and as Timoshenko's") {
+    // what an independent solver found for P2 on 10x2x2 cells, to 4 digits
+    CHECK(cantilever_mm({10, 2, 2}, 0.30) == doctest::Approx(25.21).epsilon(1e-3));
+    CHECK(cantilever_mm({10, 2, 2}, 0.45) == doctest::Approx(24.30).epsilon(1e-3));
+    CHECK(cantilever_mm({10, 2, 2}, 0.49) == doctest::Approx(23.59).epsilon(1e-3));
+    CHECK(cantilever_mm({10, 2, 2}, 0.499) == doctest::Approx(23.18).epsilon(1e-3));
+    // P L^3/(3 E I) + P L/(kappa G A) with kappa = 10/12 (Cowper, nu = 0): 25.000 + 0.600
+    CHECK(cantilever_mm({10, 2, 2}, 0.0) == doctest::Approx(25.600).epsilon(5e-3));
+}
+
+TEST_CASE("Cook's membrane leans as other quadratic tetrahedra let it, near nu = 0.5 too") {
+    // what an independent solver found for P2 on 8x8x2 cells; converged: 23.79, 23.79, 23.83, 24.0
+    CHECK(cook({8, 8, 2}, 1.0 / 3) == doctest::Approx(23.66).epsilon(2e-3));
+    CHECK(cook({8, 8, 2}, 0.45) == doctest::Approx(23.46).epsilon(2e-3));
+    CHECK(cook({8, 8, 2}, 0.49) == doctest::Approx(23.12).epsilon(2e-3));
+    CHECK(cook({8, 8, 2}, 0.499) == doctest::Approx(22.60).epsilon(2e-3));
+}
 
 TEST_CASE("the elastica by shooting is the published one") {
     // Mattiasson (1981), by elliptic integrals
@@ -142,7 +199,7 @@ TEST_CASE("a twisted square bar answers with Saint-Venant's torque, warping free
 }
 
 TEST_CASE("a heavy beam of 240 quadratic tetrahedra is 2.5 % off the converged one") {
-    // converged tips and the error of 10x2x2 cells: published with the peers' measurements
+    // converged tips and the error of 10x2x2 cells by CalculiX 2.20 and an independent solver
     struct Case {
         double young_pa, poisson;
         dvec3 tip_m;
