@@ -64,8 +64,14 @@ void write_mesh(std::ofstream& out, const tissue::QuadraticMesh& mesh) {
 // The load goes on in increments that ccx chooses. Its default tolerance is half a per cent of the
 // mean force: tightened to 1e-8, forces and corrections alike.
 void write_step(std::ofstream& out, const Problem& p) {
-    out << "*STEP, NLGEOM, INC=1000\n*STATIC\n0.1, 1.0, 1e-4, 0.25\n"
-           "*CONTROLS, PARAMETERS=FIELD\n1e-8, 1e-8\n";
+    out << "*STEP, NLGEOM, INC=1000\n";
+    if (p.steps > 0) {
+        out << "*DYNAMIC, DIRECT, ALPHA=0\n"
+            << number(p.dt_s) << ", " << number(p.steps * p.dt_s) << '\n';
+    } else {
+        out << "*STATIC\n0.1, 1.0, 1e-4, 0.25\n";
+    }
+    out << "*CONTROLS, PARAMETERS=FIELD\n1e-8, 1e-8\n";
     out << "*BOUNDARY\n";
     for (std::size_t i = 0; i < p.held.size(); ++i) {
         for (int k = 0; k < 3; ++k) {

@@ -19,6 +19,9 @@ struct Problem {
     glm::dvec3 gravity_mps2{0.0};
     std::vector<std::uint8_t> held; // kHeldX, kHeldY, kHeldZ
     std::vector<glm::dvec3> held_m; // empty: they stay
+    // more than 0: from rest, this many steps of dt_s by the trapezoidal rule (Newmark 1/4, 1/2)
+    int steps = 0;
+    double dt_s = 0.0;
 };
 
 struct Answer {
