@@ -91,7 +91,7 @@ double relative_residual(Search& s) noexcept {
             sum += s.residual_n[i] * s.residual_n[i];
     }
     const double size = norm(s.force_n) + norm(s.system.internal_n) + norm(s.inertia_n);
-    return size > 0.0 ? std::sqrt(sum) / size : 0.0;
+    return size == 0.0 ? 0.0 : std::sqrt(sum) / size; // not a number stays so
 }
 
 // K + B of the unknowns; with projected tangents if it is not positive definite otherwise.
