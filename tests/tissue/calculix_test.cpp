@@ -103,7 +103,7 @@ TEST_CASE("a block pressed by a quarter of its height deforms and pushes back as
     if (skipped("pressed block"))
         return;
     const dvec3 size{0.03, 0.03, 0.03};
-    const auto mesh = tissue::quadratic_mesh(tissue::box_mesh(size, {4, 4, 4}, 0.2, 3));
+    const auto mesh = tissue::quadratic_mesh(tissue::box_mesh(size, {3, 3, 3}, 0.2, 3));
     const auto pressed = [&](const dvec3& x) {
         return x.z > size.z - 1e-9 &&
                std::max(std::abs(x.x - 0.015), std::abs(x.y - 0.015)) < 0.008;
