@@ -79,7 +79,7 @@ void check(const reference_bodies::Solved& ours, const calculix::Answer& theirs)
     CHECK(d.force < kPrinted);
     MESSAGE("E ", ours.model.material.young_pa, " Pa, nu ", ours.model.material.poisson,
             ": displacements agree to ", d.moved, ", forces to ", d.force, "; ours ",
-            ours.report.iterations, " iterations, least J ", ours.report.min_j, "; ccx ",
+            ours.report.iterations, " iterations, least det F ", ours.report.min_det_f, "; ccx ",
             theirs.seconds, " s");
 }
 

@@ -90,4 +90,22 @@ template <typename Place> double greatest_error_m(const Solved& s, Place place) 
     return greatest;
 }
 
+/// The beam that other systems were measured on: 0.2 x 0.04 x 0.04 m, clamped at x = 0, rho 1000,
+/// under its weight in -y.
+inline Solved heavy_beam(const std::array<int, 3>& cells, double young_pa, double poisson) {
+    const auto mesh = tissue::quadratic_mesh(tissue::box_mesh({0.2, 0.04, 0.04}, cells));
+    const auto held = flags(mesh, [](auto x) { return x.x < 1e-9 ? tissue::kHeld : 0; });
+    return solve(mesh, bodies::elastic(young_pa, poisson), tissue::Law::neo_hooke, held, {},
+                 {0, -9.81, 0});
+}
+
+/// Displacement of the centre of its end face; there is a node for any number of cells.
+inline glm::dvec3 tip_m(const Solved& s) {
+    for (std::size_t i = 0; i < s.model.mesh.rest_m.size(); ++i) {
+        if (glm::length(s.model.mesh.rest_m[i] - glm::dvec3(0.2, 0.02, 0.02)) < 1e-9)
+            return s.state.position_m[i] - s.model.mesh.rest_m[i];
+    }
+    return glm::dvec3(0.0);
+}
+
 } // namespace reference_bodies

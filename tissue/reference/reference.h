@@ -59,7 +59,7 @@ struct ReferenceSystem {
     std::vector<double> internal_n; // f_int per component, held ones too: there, the reactions
     std::vector<double> stiffness;  // K on ReferenceModel::all
     double energy_j = 0.0;          // elastic
-    double min_j = 1.0;             // least det F over the quadrature points
+    double min_det_f = 1.0;         // over the quadrature points
     std::vector<double> matrix;     // what was factored, on ReferenceModel::free
     SparseFactor factor;
 };
@@ -92,15 +92,16 @@ struct NewtonReport {
     double reached = 0.0; // share of the load: 1 if all of it was
     // |residual on the unknowns| / (|f| + |f_int| + |inertia, damping|) on all components
     double relative_residual = 0.0;
-    double energy_j = 0.0; // elastic
-    double min_j = 0.0;
+    double energy_j = 0.0;  // elastic
+    double min_det_f = 0.0; // over the quadrature points
     bool converged = false;
 };
 
-/// Static equilibrium from `state`, which is where Newton starts; velocities end at 0. If none is
-/// found (loose body, too much load) `state` is the last equilibrium under a part of the load. A
-/// tolerance below rounding is reported as not converged too; `state` is then as good as it gets.
-/// Throws std::invalid_argument for a size that does not fit.
+/// Static equilibrium from `state`, where Newton starts and det F must be positive; velocities end
+/// at 0. Parts of the way lead straight to the places of held components: turn a body in steps. If
+/// no equilibrium is found (loose body, too much load) `state` is the last equilibrium under a part
+/// of the load. A tolerance below rounding is reported as not converged too; `state` is then as
+/// good as it gets. Throws std::invalid_argument for a size that does not fit.
 NewtonReport solve_static(const ReferenceModel& model, const ReferenceLoad& load,
                           const NewtonOptions& options, ReferenceSystem& system,
                           ReferenceState& state);

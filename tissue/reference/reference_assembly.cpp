@@ -42,13 +42,13 @@ void linearize_at(const ReferenceModel& model, std::span<const dvec3> moved_m,
     std::fill(system.internal_n.begin(), system.internal_n.end(), 0.0);
     std::fill(system.stiffness.begin(), system.stiffness.end(), 0.0);
     system.energy_j = 0.0;
-    system.min_j = std::numeric_limits<double>::infinity();
+    system.min_det_f = std::numeric_limits<double>::infinity();
     for (std::size_t e = 0; e < model.points.size(); ++e) {
         std::array<dmat3, 55> blocks;
         blocks.fill(dmat3(0.0));
         for (const ReferencePoint& point : model.points[e]) {
             const dmat3 F = deformation_gradient(model, e, point, moved_m);
-            system.min_j = std::min(system.min_j, glm::determinant(F));
+            system.min_det_f = std::min(system.min_det_f, glm::determinant(F));
             system.energy_j += point.volume_m3 * energy_density_jpm3(model.elasticity, F);
             const dmat3 P = point.volume_m3 * piola_stress_pa(model.elasticity, F);
             for (std::size_t a = 0; a < 10; ++a) {

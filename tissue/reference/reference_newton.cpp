@@ -190,7 +190,7 @@ bool converge(Search& s) noexcept {
         const double residual = relative_residual(s);
         s.report.relative_residual = residual;
         s.report.energy_j = s.system.energy_j;
-        s.report.min_j = s.system.min_j;
+        s.report.min_det_f = s.system.min_det_f;
         if (residual <= s.options.tolerance ||
             (descent == Descent::within_rounding && residual > kProgress * last)) {
             return true;
