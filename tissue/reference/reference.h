@@ -108,9 +108,10 @@ NewtonReport solve_static(const ReferenceModel& model, const ReferenceLoad& load
 
 enum class TimeRule { implicit_euler, midpoint };
 
-/// One step of dt_s > 0; held components move to ReferenceLoad::held_m. If no root is found `state`
-/// is as it was (NewtonReport::reached < 1). The report is at x', or at (x + x')/2. Throws as
-/// solve_static().
+/// One step of dt_s > 0; held components move to ReferenceLoad::held_m, and have the velocity that
+/// the rule gives any other (by the midpoint rule that of a way with a jump in speed rings). If no
+/// root is found `state` is as it was (NewtonReport::reached < 1). The report is at x', or at
+/// (x + x')/2. Throws as solve_static().
 NewtonReport step(const ReferenceModel& model, const ReferenceLoad& load, double dt_s,
                   TimeRule rule, const NewtonOptions& options, ReferenceSystem& system,
                   ReferenceState& state);

@@ -89,11 +89,8 @@ NewtonReport step(const ReferenceModel& model, const ReferenceLoad& load, double
     for (std::size_t i = 0; i < moved.size(); ++i) {
         const dvec3 way = moved[i] - start[i];
         state.position_m[i] += half ? 2.0 * way : way;
-        for (int k = 0; k < 3; ++k) {
-            double& v = state.velocity_mps[i][k];
-            // by the midpoint rule a held component would ring between two velocities
-            v = half && model.unknown[3 * i + k] >= 0 ? 2.0 * way[k] / h_s - v : way[k] / h_s;
-        }
+        dvec3& v = state.velocity_mps[i];
+        v = half ? 2.0 * way / h_s - v : way / h_s;
     }
     return report;
 }
