@@ -81,7 +81,7 @@ struct WideRing {
     float disc2 = 1e-3f; // square of the radius of the disc of skin that the next ring holds
     std::array<float, 3> centre{};                  // p0, tree frame
     std::array<float, 3> last_place{}, last_foot{}; // asked about, and answered; tree frame
-    std::uint32_t last_leaf = 0, last_eight = 0;    // where the nearest was
+    std::uint32_t last_leaf = 0;                    // where the nearest was
     std::uint32_t made = 0, asked = 0;              // counters, for the bench
     /// Boxes around each eight leaves, low x y z and high x y z: the first eight boxes to ask.
     static constexpr int kEights = kRoom / WideTree::kWidth;

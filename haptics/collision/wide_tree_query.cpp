@@ -5,7 +5,6 @@
 
 #include <hwy/foreach_target.h> // must come before highway.h
 
-#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "haptics/collision/wide_tree_ring.h"
@@ -48,7 +47,7 @@ struct Seen : Asked {
         leaves = kept;
         full = leaves == kRoom;
     }
-    HWY_NOINLINE void look(std::uint32_t at) noexcept {
+    void look(std::uint32_t at) noexcept {
         if (leaves == kRoom)
             make_room();
         if (full)
@@ -98,12 +97,11 @@ void search(Seen& seen) noexcept {
     }
 }
 
-HWY_NOINLINE void look_through(WideRing& ring, Seen& seen) noexcept {
+void look_through(const WideRing& ring, Seen& seen) noexcept {
     alignas(64) std::array<float, kWidth> distance2;
     for (std::uint32_t eights = eights_within(ring, seen.place.data(), seen.limit2); eights != 0;
          eights &= eights - 1) {
         const int eight = std::countr_zero(eights);
-        ring.last_eight = static_cast<std::uint32_t>(eight);
         for (std::uint32_t met =
                  leaves_within(ring, eight, seen.place.data(), seen.limit2, distance2.data());
              met != 0; met &= met - 1) {
@@ -144,19 +142,6 @@ SurfaceHit decide(const Seen& seen, const MeshView& mesh, const glm::dvec3& plac
     return best;
 }
 
-// Asks memory for what the answer will most likely need, all at once: where the caches were driven
-// out since the last tick, it would else come one after the other.
-void fetch(const WideTree& tree, const WideRing& ring) noexcept {
-    const auto lines = [](const auto& of) {
-        const char* at = reinterpret_cast<const char*>(&of);
-        for (std::size_t byte = 0; byte < sizeof(of); byte += 64)
-            hwy::Prefetch(at + byte);
-    };
-    lines(tree.leaf[ring.last_leaf]);
-    lines(ring.around);
-    lines(ring.eight[ring.last_eight]);
-}
-
 SurfaceHit closest(const WideTree& tree, const MeshView& mesh, WideRing& ring,
                    const glm::dvec3& place_m, double radius_m) {
     const glm::dvec3 p = tree.to_tree(place_m);
@@ -164,10 +149,8 @@ SurfaceHit closest(const WideTree& tree, const MeshView& mesh, WideRing& ring,
         return {};
     ++ring.asked;
     const double radius = radius_m * tree.scale_pm;
-    const bool known = ring.last_leaf < tree.leaf.size();
-    if (known)
-        fetch(tree, ring);
     Seen seen{tree, p, radius};
+    const bool known = ring.last_leaf < tree.leaf.size();
     if (known)
         seen.look(ring.last_leaf);
 

@@ -22,7 +22,8 @@
 //      changes the force by kCatchUp_n. Off an edge or over a bump it catches up in a few ticks,
 //      and the force with it.
 // Not proved: a mesh that closes on the ball from all sides (it goes where that is least, and may
-// be passed), and more than 256 triangles within its radius (some are not looked at).
+// be passed), and more triangles within its radius than NearLeaves has room for: at least 96, some
+// 600 as a rule (then some are not looked at).
 // Subgoals and planes: Ruspini, Kolarov and Khatib 1997, to which moving triangles and the proof
 // of every step are added.
 #pragma once
