@@ -7,7 +7,7 @@
 // Inverted tets take their warped stiffness in every step.
 //
 //   CorotatedModel   what never changes: mesh, masses, pattern
-//   CorotatedState   x and v of all nodes: all that a snapshot needs
+//   CorotatedState   x and v of all nodes, and if it recovers: all that a snapshot needs
 //   CorotatedSystem  A, its factor and f_int, made at a state; the next step and the local model
 //                    both use it
 // The pieces of a step are separate so that sim/ can put the contact solve between them.
@@ -47,6 +47,7 @@ struct CorotatedModel {
 struct CorotatedState {
     std::vector<glm::dvec3> position_m;
     std::vector<glm::dvec3> velocity_mps;
+    bool recovering = false; // has been inverted and not rested since, see descent.h
 };
 
 struct CorotatedSystem {

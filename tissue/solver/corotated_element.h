@@ -21,14 +21,22 @@ struct ElementShape {
     double det;         // of F
 };
 
-inline ElementShape element_shape(const CorotatedModel& model, std::size_t tet,
-                                  std::span<const glm::dvec3> x) noexcept {
+inline glm::dmat3 deformation_gradient(const CorotatedModel& model, std::size_t tet,
+                                       std::span<const glm::dvec3> x) noexcept {
     const Tet& t = model.mesh.tets[tet];
     const std::array<glm::dvec3, 4>& G = model.gradient_1pm[tet];
     const glm::dvec3 e1 = x[t[1]] - x[t[0]], e2 = x[t[2]] - x[t[0]], e3 = x[t[3]] - x[t[0]];
-    const glm::dmat3 F{G[1].x * e1 + G[2].x * e2 + G[3].x * e3,
-                       G[1].y * e1 + G[2].y * e2 + G[3].y * e3,
-                       G[1].z * e1 + G[2].z * e2 + G[3].z * e3};
+    return {G[1].x * e1 + G[2].x * e2 + G[3].x * e3, G[1].y * e1 + G[2].y * e2 + G[3].y * e3,
+            G[1].z * e1 + G[2].z * e2 + G[3].z * e3};
+}
+
+inline double determinant(const glm::dmat3& F) noexcept {
+    return glm::dot(F[0], glm::cross(F[1], F[2]));
+}
+
+inline ElementShape element_shape(const CorotatedModel& model, std::size_t tet,
+                                  std::span<const glm::dvec3> x) noexcept {
+    const glm::dmat3 F = deformation_gradient(model, tet, x);
     const glm::dmat3 R = polar_rotation(F);
     // S = sum_k F_k R_k^T over columns k; the mean of both triangles is exactly symmetric
     glm::dmat3 S;
@@ -39,7 +47,14 @@ inline ElementShape element_shape(const CorotatedModel& model, std::size_t tet,
             S[c][r] = S[r][c] = 0.5 * (rc + cr);
         }
     }
-    return {R, S, S[0][0] + S[1][1] + S[2][2], glm::dot(F[0], glm::cross(F[1], F[2]))};
+    return {R, S, S[0][0] + S[1][1] + S[2][2], determinant(F)};
+}
+
+/// The same about a rotation that is not the nearest: S = F R^T, not symmetric. The forces are
+/// those of mu |F - R|^2 + lambda/2 (tr S - 3)^2 with R held, which is convex in F.
+inline ElementShape element_shape_about(const glm::dmat3& F, const glm::dmat3& R) noexcept {
+    const glm::dmat3 S = F * glm::transpose(R);
+    return {R, S, S[0][0] + S[1][1] + S[2][2], determinant(F)};
 }
 
 inline double element_energy_j(const CorotatedModel& model, std::size_t tet,
@@ -92,6 +107,12 @@ inline ElementTangent element_tangent(const CorotatedModel& model, std::size_t t
     // q = -g: the products of two q keep their sign, the last term becomes -mu (g_a.g_b) I
     return {volume * model.lambda_pa, 2.0 * volume * model.mu_pa, volume * model.mu_pa,
             glm::dmat3(-1.0)};
+}
+
+/// Of element_shape_about(): R held, whatever F does.
+inline ElementTangent element_tangent_about(const CorotatedModel& model, std::size_t tet) noexcept {
+    const double volume = model.volume_m3[tet];
+    return {volume * model.lambda_pa, 2.0 * volume * model.mu_pa, 0.0, glm::dmat3(0.0)};
 }
 
 } // namespace tissue
