@@ -104,12 +104,13 @@ Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Ma
     tissue::CorotatedSystem system = tissue::make_system(model);
     tissue::linearize(model, state, dt_s, system);
     tissue::ContactBasis basis = tissue::make_contact_basis(model);
+    tissue::Descent descent = tissue::make_descent(model);
     const std::size_t n = static_cast<std::size_t>(model.unknowns);
-    body.soft.emplace(SoftBody{std::move(model), std::move(state), std::move(system),
-                               std::move(basis),
-                               tissue::make_skin_frames(skin, body.organ->mesh.rest_m),
-                               std::vector<double>(n * tissue::kMaxBasis), std::vector<double>(n),
-                               std::vector<double>(n * 3 * haptics::kTools)});
+    body.soft.emplace(SoftBody{
+        std::move(model), std::move(state), std::move(system), std::move(basis),
+        tissue::make_skin_frames(skin, body.organ->mesh.rest_m),
+        std::vector<double>(n * tissue::kMaxBasis), std::vector<double>(n),
+        std::vector<double>(n * 3 * haptics::kTools), std::vector<double>(n), std::move(descent)});
     tissue::place_surface(skin, body.soft->skin_frame, body.soft->state.position_m, body.skin_m,
                           body.skin_normal);
     return body;

@@ -8,6 +8,7 @@
 #include "tissue/mesh/baked_organ.h"
 #include "tissue/response/contact_basis.h"
 #include "tissue/response/patch.h"
+#include "tissue/solver/descent.h"
 
 #include <limits>
 #include <memory>
@@ -25,6 +26,8 @@ struct SoftBody {
     std::vector<double> shape_by_unknown; // the basis, one line of modes per unknown
     std::vector<double> motion_m;         // du of the step being made
     std::vector<double> answer_m;         // A^-1 of the contact rows, 3 columns a tool
+    std::vector<double> load_n;           // contact forces of the step being made
+    tissue::Descent descent;              // for steps that one Newton iteration does not do
     double drift_m = 0.0;                 // how far anything moved since the system was linearised
     int linearisations = 0; // counts them, so that what rests on one knows when it is old
     int basis_of = -1;      // the linearisation and places that the basis was made for

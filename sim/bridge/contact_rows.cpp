@@ -204,6 +204,7 @@ void apply_forces(TissueRig& rig, const haptics::ContactProblem& problem,
         SoftBody& soft = *body.soft;
         const std::size_t n = static_cast<std::size_t>(soft.model.unknowns);
         std::size_t column = 0;
+        std::fill(soft.load_n.begin(), soft.load_n.end(), 0.0);
         for (int i = 0; i < kTools; ++i) {
             if (!problem.row[i].active || rig.contact[i].body != static_cast<int>(b))
                 continue;
@@ -212,6 +213,8 @@ void apply_forces(TissueRig& rig, const haptics::ContactProblem& problem,
             column += 3;
             if (force == glm::dvec3{0.0})
                 continue;
+            tissue::add_row(soft.model, body.organ->surface, tissue_point(rig.contact[i].at), force,
+                            -1.0, soft.load_n);
             for (std::size_t k = 0; k < n; ++k) {
                 soft.motion_m[k] -= force.x * x[k] + force.y * x[n + k] + force.z * x[2 * n + k];
             }

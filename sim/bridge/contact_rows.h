@@ -19,7 +19,7 @@ void condense_rows(TissueRig& rig, haptics::ContactProblem& problem) noexcept;
 void fill_rows(const TissueRig& rig, const ToolsNow& tools,
                haptics::ContactProblem& problem) noexcept;
 
-/// Adds the contact forces to the step's motion: du -= A^-1 H^T F.
+/// Adds the contact forces to the step's motion, du -= A^-1 H^T F, and keeps them in `load_n`.
 void apply_forces(TissueRig& rig, const haptics::ContactProblem& problem,
                   const haptics::ContactSolution& solution) noexcept;
 

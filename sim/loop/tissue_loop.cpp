@@ -51,7 +51,24 @@ void wake_touched(TissueRig& rig, const haptics::ContactSolution& solution) noex
     }
 }
 
-void advance_bodies(TissueRig& rig, const haptics::ContactSolution& solution) noexcept {
+// Follows the tangent while that holds, else linearises where the step ends.
+void end_step(TissueRig& rig, SoftBody& soft, double moved_m, StepOutcome& outcome) noexcept {
+    soft.drift_m += moved_m;
+    if (soft.system.inverted == 0 && !(soft.drift_m > rig.config.relinearise_m)) {
+        tissue::advance(soft.model, soft.motion_m, rig.config.step_s, soft.state);
+        tissue::follow_tangent(soft.model, soft.motion_m, soft.system);
+        return;
+    }
+    const tissue::StepEnd end = tissue::finish_step(soft.model, soft.load_n, soft.motion_m,
+                                                    soft.system, soft.descent, soft.state);
+    outcome.descent_iterations = std::max(outcome.descent_iterations, end.iterations);
+    outcome.descent_residual = std::max(outcome.descent_residual, end.relative_residual);
+    soft.drift_m = 0.0;
+    ++soft.linearisations;
+}
+
+void advance_bodies(TissueRig& rig, const haptics::ContactSolution& solution,
+                    StepOutcome& outcome) noexcept {
     for (std::size_t b = 0; b < rig.bodies.size(); ++b) {
         Body& body = rig.bodies[b];
         if (!body.soft || body.soft->resting)
@@ -69,17 +86,10 @@ void advance_bodies(TissueRig& rig, const haptics::ContactSolution& solution) no
             std::fill(soft.state.velocity_mps.begin(), soft.state.velocity_mps.end(),
                       glm::dvec3{0.0});
             soft.resting = true;
+            soft.state.recovering = false;
             continue;
         }
-        tissue::advance(soft.model, soft.motion_m, rig.config.step_s, soft.state);
-        soft.drift_m += moved_m;
-        if (soft.drift_m > rig.config.relinearise_m) {
-            tissue::linearize(soft.model, soft.state, rig.config.step_s, soft.system);
-            soft.drift_m = 0.0;
-            ++soft.linearisations;
-        } else {
-            tissue::follow_tangent(soft.model, soft.motion_m, soft.system);
-        }
+        end_step(rig, soft, moved_m, outcome);
         tissue::place_surface(body.organ->surface, soft.skin_frame, soft.state.position_m,
                               body.skin_m, body.skin_normal);
     }
@@ -184,7 +194,7 @@ StepOutcome tissue_step(TissueRig& rig, const ToolsNow& tools, TissueAnswer& ans
     outcome.contact_residual_m = solution.residual_m;
     wake_touched(rig, solution);
     apply_forces(rig, problem, solution);
-    advance_bodies(rig, solution);
+    advance_bodies(rig, solution, outcome);
     outcome.peak_stress_pa = peak_stress_pa(rig);
     slide_contacts(rig, solution);
 

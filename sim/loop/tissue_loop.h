@@ -65,6 +65,8 @@ struct StepOutcome {
     double peak_stress_pa = 0.0; // von Mises, over the soft bodies that are not resting; where
                                  // nothing moved relinearise_m, that of the last linearisation
     int inverted = 0;
+    int descent_iterations = 0; // worst body; 0: every body did with one Newton iteration
+    double descent_residual = 0.0;
     bool warped = false; // a body fell back to the warped tangent
 };
 

@@ -57,7 +57,7 @@ sim::SoftBody some_tissue() {
     const std::array<std::uint8_t, 4> anchored{1, 0, 0, 0};
     tissue::CorotatedModel model = tissue::make_corotated(mesh, {}, anchored);
     tissue::CorotatedSystem system = tissue::make_system(model);
-    return {std::move(model), {}, std::move(system), {}, {}, {}, {}, {}};
+    return {std::move(model), {}, std::move(system), {}, {}, {}, {}, {}, {}, {}};
 }
 
 sim::Body body_of(std::vector<dvec3> vertex_m, std::vector<tissue::Triangle> triangles,
