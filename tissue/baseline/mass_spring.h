@@ -21,7 +21,7 @@ struct Spring {
 struct MassSpringModel {
     CorotatedModel body;
     std::vector<Spring> springs{}; // ordered by a, then b
-    double critical_s = 0.0;       // 2/omega_max at rest; no spring stiffens when pulled
+    double critical_s = 0.0;       // 2/omega_max at rest; a pulled spring is stiffer sideways
     double substep_s = 0.0;        // the longest that step() takes, kCourant of it
 };
 

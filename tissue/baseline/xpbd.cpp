@@ -90,15 +90,14 @@ BaselineReport step(const XpbdModel& model, std::span<const dvec3> load_n, doubl
         for (std::size_t i = 0; i < body.dof.size(); ++i) {
             if (body.dof[i] >= 0)
                 state.position_m[i] +=
-                    h * keep *
-                    (state.velocity_mps[i] + h * free_acceleration_mps2(body, load_n, i));
+                    h * (state.velocity_mps[i] + h * free_acceleration_mps2(body, load_n, i));
         }
         std::fill(scratch.multiplier.begin(), scratch.multiplier.end(), 0.0);
         for (int s = 0; s < model.sweeps; ++s)
             sweep(model, h, scratch.multiplier, state.position_m);
         for (std::size_t i = 0; i < body.dof.size(); ++i) {
             if (body.dof[i] >= 0)
-                state.velocity_mps[i] = (state.position_m[i] - scratch.node[i]) / h;
+                state.velocity_mps[i] = keep / h * (state.position_m[i] - scratch.node[i]);
         }
     }
     return look_at(body, state, model.substeps);

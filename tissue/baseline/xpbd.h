@@ -6,9 +6,12 @@
 //   C_D = sqrt(I1), compliance 1/(mu V);  C_H = J - 1 - mu/lambda', compliance 1/(lambda' V)
 //   dl = -(C + l a/h^2) / (sum w |grad C|^2 + a/h^2),  x += w grad C dl
 // lambda' = lambda + mu gives psi the tangent of linear elasticity at rest (Smith, de Goes & Kim
-// 2018); the paper takes Lame's lambda itself and is that much too soft in volume. A sweep that is
-// not the last of many leaves the two constraints of each tet, which pull against each other also
-// at rest, and those of its neighbours unbalanced: stiffness depends on step, sweeps and mesh.
+// 2018); the paper takes Lame's lambda itself and is that much too soft in volume.
+// The two constraints of a tet pull against each other also at rest, each along its gradient where
+// the one before had left the tet, and multipliers begin every substep at 0. More sweeps make
+// C + l a/h^2 vanish, but do not bring x to where M (x - x~) = h^2 times the forces at x: that
+// error goes with h^2 alone, in units of the tet's own time, so a coarse step or a fine mesh is
+// soft, and crooked.
 #pragma once
 
 #include "tissue/baseline/baseline.h"

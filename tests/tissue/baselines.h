@@ -1,0 +1,153 @@
+// tests/tissue/baselines.h
+// What the tests of the baselines share: one name for four makers, and bodies to make.
+#pragma once
+
+#include "tests/tissue/bodies.h"
+#include "tissue/baseline/mass_spring.h"
+#include "tissue/baseline/projective.h"
+#include "tissue/baseline/tled.h"
+#include "tissue/baseline/xpbd.h"
+
+namespace baselines {
+
+using glm::dvec3;
+
+template <typename Model>
+Model make(const tissue::TetMesh& mesh, const tissue::Material& material,
+           std::span<const std::uint8_t> anchored = {}, const dvec3& gravity_mps2 = dvec3{0.0}) {
+    if constexpr (std::is_same_v<Model, tissue::MassSpringModel>)
+        return tissue::make_mass_spring(mesh, material, anchored, gravity_mps2);
+    else if constexpr (std::is_same_v<Model, tissue::TledModel>)
+        return tissue::make_tled(mesh, material, anchored, gravity_mps2);
+    else if constexpr (std::is_same_v<Model, tissue::XpbdModel>)
+        return tissue::make_xpbd(mesh, material, anchored, gravity_mps2);
+    else
+        return tissue::make_projective(mesh, material, anchored, gravity_mps2);
+}
+
+/// `seconds` of steps from `state`.
+template <typename Model>
+tissue::BaselineReport run(const Model& model, std::span<const dvec3> load_n, double dt_s,
+                           int steps, tissue::BaselineState& state) {
+    auto scratch = make_scratch(model);
+    tissue::BaselineReport report;
+    for (int i = 0; i < steps; ++i)
+        report = step(model, load_n, dt_s, scratch, state);
+    return report;
+}
+
+/// Not a number if one is not.
+inline double fastest_mps(const tissue::BaselineState& state) {
+    double fastest = 0.0;
+    for (const dvec3& v : state.velocity_mps)
+        fastest = glm::length(v) <= fastest ? fastest
+                  : std::isnan(fastest)     ? fastest
+                                            : glm::length(v);
+    return fastest;
+}
+
+/// Steps from rest until nothing is faster than `still_mps`.
+template <typename Model>
+tissue::BaselineState settled(const Model& model, std::span<const dvec3> load_n, double dt_s,
+                              double still_mps, int most_steps) {
+    auto scratch = make_scratch(model);
+    tissue::BaselineState state = rest_state(model.body);
+    for (int i = 0; i < most_steps; ++i) {
+        step(model, load_n, dt_s, scratch, state);
+        if (fastest_mps(state) < still_mps)
+            return state;
+    }
+    state.position_m.assign(state.position_m.size(), dvec3{NAN}); // so that no check passes
+    return state;
+}
+
+/// One tet on an equilateral base of radius 10 mm, its apex (node 3) above the centroid.
+inline tissue::TetMesh lone_tet(double height_m) {
+    const double r = 0.01, root3 = std::sqrt(3.0);
+    return {{{r, 0, 0}, {-r / 2, r * root3 / 2, 0}, {-r / 2, -r * root3 / 2, 0}, {0, 0, height_m}},
+            {{0, 1, 2, 3}}};
+}
+inline constexpr std::uint8_t kBase[] = {1, 1, 1, 0};
+
+inline tissue::TetMesh small_box() {
+    return tissue::box_mesh({0.03, 0.02, 0.02}, {3, 2, 2}, 0.1);
+}
+
+/// 0.2 x 0.04 x 0.04 m, x = 0 clamped, 1000 kg/m3, under its weight in -y.
+struct Beam {
+    tissue::TetMesh mesh;
+    std::vector<std::uint8_t> anchored;
+    tissue::Material material;
+    dvec3 gravity_mps2{0.0, -9.81, 0.0};
+
+    Beam(const std::array<int, 3>& cells, double young_pa, double poisson)
+        : mesh(tissue::box_mesh({0.2, 0.04, 0.04}, cells)),
+          anchored(bodies::anchors(mesh, [](auto x) { return x.x < 1e-9; })),
+          material(bodies::elastic(young_pa, poisson)) {
+        // twice the first frequency of a cantilever, (1.875/L)^2 sqrt(E I/(rho A)), whatever is
+        // asked of it settles soonest
+        const double omega_radps = std::pow(1.8751 / 0.2, 2) * std::sqrt(young_pa / 12e3) * 0.04;
+        material.damping_mass_1ps = 2.0 * omega_radps;
+    }
+    template <typename Model> Model made() const {
+        return make<Model>(mesh, material, anchored, gravity_mps2);
+    }
+    /// Mean displacement of the end face, over its nodes.
+    dvec3 tip_m(const tissue::BaselineState& state) const {
+        dvec3 sum{0.0};
+        int nodes = 0;
+        for (std::size_t i = 0; i < mesh.rest_m.size(); ++i) {
+            if (mesh.rest_m[i].x > 0.2 - 1e-9) {
+                sum += state.position_m[i] - mesh.rest_m[i];
+                ++nodes;
+            }
+        }
+        return sum / static_cast<double>(nodes);
+    }
+    /// The static answer of corotated linear tetrahedra on this mesh.
+    tissue::CorotatedState p1() const {
+        const auto model = tissue::make_corotated(mesh, material, anchored, gravity_mps2);
+        tissue::CorotatedState state = tissue::rest_state(model);
+        if (!tissue::solve_static(model, {}, 1e-10, 60, state).converged)
+            throw std::runtime_error("the static corotated beam did not converge");
+        return state;
+    }
+};
+
+/// Free nodes moved by up to `noise_m`, moving at up to `noise_mps`.
+inline tissue::BaselineState shaken(const tissue::CorotatedModel& body, double noise_m,
+                                    double noise_mps, unsigned seed) {
+    std::mt19937_64 random(seed);
+    tissue::BaselineState state = tissue::rest_state(body);
+    for (std::size_t i = 0; i < body.dof.size(); ++i) {
+        if (body.dof[i] < 0)
+            continue;
+        state.position_m[i] += noise_m * bodies::signed_vector(random);
+        state.velocity_mps[i] = noise_mps * bodies::signed_vector(random);
+    }
+    return state;
+}
+
+/// Greatest difference between the forces and the differenced energy, over the greatest force.
+template <typename Model>
+double gradient_error(const Model& model, const tissue::BaselineState& state) {
+    constexpr double kStep_m = 1e-7;
+    std::vector<dvec3> force(state.position_m.size());
+    elastic_forces(model, state, force);
+    double error = 0.0, size = 0.0;
+    tissue::BaselineState moved = state;
+    for (std::size_t i = 0; i < force.size(); ++i) {
+        for (int k = 0; k < 3; ++k) {
+            moved.position_m[i][k] = state.position_m[i][k] + kStep_m;
+            const double above = elastic_energy_j(model, moved);
+            moved.position_m[i][k] = state.position_m[i][k] - kStep_m;
+            const double below = elastic_energy_j(model, moved);
+            moved.position_m[i][k] = state.position_m[i][k];
+            error = std::max(error, std::abs((above - below) / (2 * kStep_m) - force[i][k]));
+            size = std::max(size, std::abs(force[i][k]));
+        }
+    }
+    return error / size;
+}
+
+} // namespace baselines
