@@ -122,7 +122,9 @@ TEST_CASE_TEMPLATE("mass damping takes a loose body's speed as its rule says", M
                    EVERY_BASELINE) {
     tissue::Material material = bodies::elastic(8e3, 0.45);
     material.damping_mass_1ps = 5.0;
-    const auto model = make<Model>(baselines::small_box(), material);
+    auto model = make<Model>(baselines::small_box(), material);
+    if constexpr (std::is_same_v<Model, ProjectiveModel>)
+        model.iterations = 1; // a translation is solved by one
     tissue::BaselineState state = tissue::rest_state(model.body);
     for (dvec3& v : state.velocity_mps)
         v = {0.3, 0.0, 0.0};
@@ -155,7 +157,7 @@ TEST_CASE("the power iteration finds the greatest of known frequencies") {
         }
     };
     const double exact = std::sqrt(1.0 * body.unknowns);
-    CHECK(tissue::greatest_frequency_radps(body, product) == doctest::Approx(exact).epsilon(1e-4));
+    CHECK(baselines::off(tissue::greatest_frequency_radps(body, product), exact) < 1e-4);
 }
 
 TEST_CASE("a step has as many substeps as it needs") {

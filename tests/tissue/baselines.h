@@ -25,7 +25,13 @@ Model make(const tissue::TetMesh& mesh, const tissue::Material& material,
         return tissue::make_projective(mesh, material, anchored, gravity_mps2);
 }
 
-/// `seconds` of steps from `state`.
+/// Relative error. doctest's Approx adds 1 to the size of what it compares: of micrometres it would
+/// pass anything.
+inline double off(double value, double expected) {
+    return std::abs(value - expected) / std::abs(expected);
+}
+
+/// `steps` from `state`.
 template <typename Model>
 tissue::BaselineReport run(const Model& model, std::span<const dvec3> load_n, double dt_s,
                            int steps, tissue::BaselineState& state) {
@@ -126,6 +132,23 @@ inline tissue::BaselineState shaken(const tissue::CorotatedModel& body, double n
         state.velocity_mps[i] = noise_mps * bodies::signed_vector(random);
     }
     return state;
+}
+
+/// Relative change of the energy in ten seconds of steps of a fifth of the critical one, from the
+/// mean over the first second to that over the last: in between it swings with omega h.
+template <typename Model> double energy_drift(Model model) {
+    model.substep_s = 0.2 * model.critical_s;
+    tissue::BaselineState state = shaken(model.body, 2e-4, 0.02, 6);
+    auto scratch = make_scratch(model);
+    double first_j = 0.0, last_j = 0.0;
+    for (int i = 0; i < 1000; ++i) {
+        step(model, {}, 0.01, scratch, state);
+        const double energy_j =
+            elastic_energy_j(model, state) + bodies::kinetic_energy_j(model.body, state);
+        first_j += i < 100 ? energy_j : 0.0;
+        last_j += i >= 900 ? energy_j : 0.0;
+    }
+    return off(last_j, first_j);
 }
 
 /// Greatest difference between the forces and the differenced energy, over the greatest force.

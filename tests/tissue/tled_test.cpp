@@ -26,7 +26,7 @@ TEST_CASE("a sheared block pulls with mu gamma A, inside there is no force") {
         if (!side)
             CHECK(glm::length(force[i]) < 1e-14);
     }
-    CHECK(top_n == doctest::Approx(mu_pa * shear * 0.03 * 0.02).epsilon(1e-12));
+    CHECK(baselines::off(top_n, mu_pa * shear * 0.03 * 0.02) < 1e-12);
 }
 
 TEST_CASE("forces of TLED are the gradient of its energy") {
@@ -42,20 +42,20 @@ TEST_CASE("a lone tet's critical step is the time a pressure wave takes through 
         const tissue::Lame l = tissue::lame(material);
         const auto model =
             tissue::make_tled(baselines::lone_tet(height_m), material, baselines::kBase);
-        CHECK(model.critical_s ==
-              doctest::Approx(height_m * std::sqrt(1000 / (l.lambda_pa + 2 * l.mu_pa)))
-                  .epsilon(1e-6));
-        CHECK(model.substep_s == doctest::Approx(0.9 * model.critical_s));
+        CHECK(baselines::off(model.critical_s,
+                             height_m * std::sqrt(1000 / (l.lambda_pa + 2 * l.mu_pa))) < 1e-4);
+        CHECK(baselines::off(model.substep_s, 0.9 * model.critical_s) < 1e-12);
     }
 }
 
 TEST_CASE("critical steps of a cube are those computed by others, and vanish as nu goes to 1/2") {
     // 30 mm, 6^3 cells, rho 1000, E = 10 kPa; eigenvalues of an assembled matrix, to 3 digits
-    const double published_ms[][2] = {{0.3, 0.913}, {0.45, 0.523}, {0.49, 0.242}, {0.499, 0.0769}};
+    const double published_ms[][3] = {
+        {0.3, 0.913, 5e-4}, {0.45, 0.523, 5e-4}, {0.49, 0.242, 5e-4}, {0.499, 0.0769, 5e-5}};
     const tissue::TetMesh mesh = tissue::box_mesh({0.03, 0.03, 0.03}, {6, 6, 6});
-    for (const auto& [poisson, ms] : published_ms) {
+    for (const auto& [poisson, ms, rounding_ms] : published_ms) {
         const auto model = tissue::make_tled(mesh, elastic(1e4, poisson), {});
-        CHECK(1e3 * model.critical_s == doctest::Approx(ms).epsilon(1e-3));
+        CHECK(std::abs(1e3 * model.critical_s - ms) < rounding_ms);
     }
 }
 
@@ -74,15 +74,8 @@ TEST_CASE("central differences are stable below the critical step and diverge ab
 }
 
 TEST_CASE("TLED loses no energy in ten seconds") {
-    auto model = tissue::make_tled(baselines::small_box(), elastic(7e3, 0.3), {});
-    model.substep_s = 0.2 * model.critical_s;
-    tissue::BaselineState state = baselines::shaken(model.body, 2e-4, 0.02, 6);
-    const auto energy_j = [&] {
-        return elastic_energy_j(model, state) + bodies::kinetic_energy_j(model.body, state);
-    };
-    const double before = energy_j();
-    baselines::run(model, {}, 0.01, 1000, state);
-    CHECK(energy_j() == doctest::Approx(before).epsilon(0.01));
+    CHECK(baselines::energy_drift(
+              tissue::make_tled(baselines::small_box(), elastic(7e3, 0.3), {})) < 0.01);
 }
 
 TEST_CASE("a beam of TLED settles where linear tetrahedra do, locked") {
@@ -93,7 +86,7 @@ TEST_CASE("a beam of TLED settles where linear tetrahedra do, locked") {
         const auto state = baselines::settled(beam.made<tissue::TledModel>(), {}, 0.01, 1e-7, 2000);
         const double tip = beam.tip_m(state).y, p1 = beam.tip_m(beam.p1()).y;
         MESSAGE("nu ", poisson, " tip ", 1e3 * tip, " mm, P1 ", 1e3 * p1);
-        CHECK(tip == doctest::Approx(p1).epsilon(2e-3));
+        CHECK(baselines::off(tip, p1) < 2e-3);
     }
 }
 
@@ -118,5 +111,5 @@ TEST_CASE("a tet pushed through its base by TLED rests inside out") {
     const auto report = baselines::run(model, {}, 0.001, 2000, state);
     CHECK(report.finite);
     CHECK(report.inverted == 1);
-    CHECK(state.position_m[3].z == doctest::Approx(-low * height_m).epsilon(1e-6));
+    CHECK(baselines::off(state.position_m[3].z, -low * height_m) < 1e-6);
 }
