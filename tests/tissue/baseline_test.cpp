@@ -123,8 +123,10 @@ TEST_CASE_TEMPLATE("mass damping takes a loose body's speed as its rule says", M
     tissue::Material material = bodies::elastic(8e3, 0.45);
     material.damping_mass_1ps = 5.0;
     auto model = make<Model>(baselines::small_box(), material);
-    if constexpr (std::is_same_v<Model, ProjectiveModel>)
-        model.iterations = 1; // a translation is solved by one
+    if constexpr (std::is_same_v<Model, ProjectiveModel>) {
+        model.start = tissue::ProjectiveStart::resting; // the other one is right at once
+        model.iterations = 1;
+    }
     tissue::BaselineState state = tissue::rest_state(model.body);
     for (dvec3& v : state.velocity_mps)
         v = {0.3, 0.0, 0.0};

@@ -94,7 +94,7 @@ TEST_CASE("a lone tet's critical step is that of its three springs") {
     const double length2 = height_m * height_m + 1e-4, npm = 0.96 * young_pa * volume_m3 / length2;
     const double stiffest = npm * std::max(3 * height_m * height_m, 1.5 * 1e-4) / length2;
     CHECK(baselines::off(model.critical_s, 2 / std::sqrt(stiffest / (1000 * volume_m3 / 4))) <
-          1e-6);
+          1e-4);
     CHECK(baselines::off(model.substep_s, 0.9 * model.critical_s) < 1e-12);
 }
 
