@@ -4,6 +4,7 @@
 #include "tests/tissue/baselines.h"
 
 #include <doctest/doctest.h>
+#include <glm/vector_relational.hpp>
 
 using baselines::make;
 using glm::dmat3;
@@ -16,6 +17,30 @@ using tissue::XpbdModel;
 #define EVERY_BASELINE MassSpringModel, TledModel, XpbdModel, ProjectiveModel
 
 namespace {
+
+enum class Tangle { flat, inside_out, pulled_through };
+
+// A loose cube after a second, from a shape that has inverted tets.
+template <typename Model> struct Untangled {
+    Model model;
+    tissue::BaselineState state;
+    tissue::BaselineReport report;
+    explicit Untangled(Tangle tangle) {
+        tissue::Material material = bodies::elastic(5e3, 0.3);
+        material.damping_mass_1ps = 20.0;
+        model = make<Model>(tissue::box_mesh({0.03, 0.03, 0.03}, {3, 3, 3}, 0.1), material);
+        state = tissue::rest_state(model.body);
+        for (dvec3& x : state.position_m) {
+            if (tangle == Tangle::flat)
+                x.z = 0.0;
+            if (tangle == Tangle::inside_out)
+                x.z = -x.z;
+            if (tangle == Tangle::pulled_through && glm::all(glm::greaterThan(x, dvec3(0.02))))
+                x -= 0.05;
+        }
+        report = baselines::run(model, {}, 0.01, 100, state);
+    }
+};
 
 dvec3 momentum_ns(const tissue::CorotatedModel& body, const tissue::BaselineState& state) {
     dvec3 sum{0.0};
@@ -147,6 +172,26 @@ TEST_CASE_TEMPLATE("what is not a number is told, what cannot be is refused", Mo
     CHECK_FALSE(baselines::run(model, {}, 0.01, 1, state).finite);
     CHECK_THROWS_WITH_AS(make<Model>(baselines::small_box(), bodies::elastic(8e3, 0.5)),
                          doctest::Contains("0.5"), std::invalid_argument);
+}
+
+TEST_CASE_TEMPLATE("inverted tets return", Model, XpbdModel, ProjectiveModel) {
+    for (const Tangle tangle : {Tangle::flat, Tangle::inside_out, Tangle::pulled_through}) {
+        const Untangled<Model> body(tangle);
+        CHECK(body.report.inverted == 0);
+        const tissue::TetMesh& mesh = body.model.body.mesh;
+        CHECK(baselines::off(tissue::volume_m3(mesh, body.state.position_m),
+                             tissue::volume_m3(mesh, mesh.rest_m)) < 0.02);
+    }
+}
+
+TEST_CASE_TEMPLATE("inverted tets do not return, or are no longer numbers", Model, MassSpringModel,
+                   TledModel) {
+    for (const Tangle tangle : {Tangle::flat, Tangle::inside_out, Tangle::pulled_through}) {
+        const Untangled<Model> body(tangle);
+        CHECK((!body.report.finite || body.report.inverted > 0));
+        // springs have no wall at det F = 0: they rest, but on the wrong side
+        CHECK(body.report.finite == std::is_same_v<Model, MassSpringModel>);
+    }
 }
 
 TEST_CASE("the power iteration finds the greatest of known frequencies") {

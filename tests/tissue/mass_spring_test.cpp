@@ -4,6 +4,7 @@
 #include "tests/tissue/baselines.h"
 
 #include <doctest/doctest.h>
+#include <glm/vector_relational.hpp>
 
 using bodies::elastic;
 using glm::dvec3;
