@@ -45,10 +45,12 @@ tissue::BaselineReport run(const Model& model, std::span<const dvec3> load_n, do
 /// Not a number if one is not.
 inline double fastest_mps(const tissue::BaselineState& state) {
     double fastest = 0.0;
-    for (const dvec3& v : state.velocity_mps)
-        fastest = glm::length(v) <= fastest ? fastest
-                  : std::isnan(fastest)     ? fastest
-                                            : glm::length(v);
+    for (const dvec3& v : state.velocity_mps) {
+        const double speed = glm::length(v);
+        if (std::isnan(speed))
+            return speed;
+        fastest = std::max(fastest, speed);
+    }
     return fastest;
 }
 

@@ -6,7 +6,7 @@
 //   C_D = sqrt(I1), compliance 1/(mu V);  C_H = J - 1 - mu/lambda', compliance 1/(lambda' V)
 //   dl = -(C + l a/h^2) / (sum w |grad C|^2 + a/h^2),  x += w grad C dl
 // lambda' = lambda + mu gives psi the tangent of linear elasticity at rest (Smith, de Goes & Kim
-// 2018); the paper takes Lame's lambda itself and is that much too soft in volume.
+// 2018); with Lame's lambda itself it would be softer in volume by mu.
 // The two constraints of a tet pull against each other also at rest, each along its gradient where
 // the one before had left the tet, and multipliers begin every substep at 0. More sweeps make
 // C + l a/h^2 vanish, but do not bring x to where M (x - x~) = h^2 times the forces at x: that
