@@ -28,8 +28,8 @@ TledModel make_tled(const TetMesh& mesh, const Material& material,
 BaselineScratch make_scratch(const TledModel& model);
 
 /// `load_n` per node, constant during the step; may be empty. The stress is continued to det F < 0
-/// by the real cube root: a wall without bound at det F = 0 keeps a tet on the side where it is, and
-/// what starts at the wall ends as no number.
+/// by the real cube root: a wall without bound at det F = 0 keeps a tet on the side where it is,
+/// and what starts at the wall ends as no number.
 BaselineReport step(const TledModel& model, std::span<const glm::dvec3> load_n, double dt_s,
                     BaselineScratch& scratch, BaselineState& state) noexcept;
 
