@@ -18,7 +18,8 @@
 
 namespace haptics {
 
-struct NearLeaves { // not initialised: there is room for many
+/// Not initialised: there is room for many. Not to be copied: it may point into itself.
+struct NearLeaves {
     static constexpr int kRoom = 96;
     static constexpr int kWidth = WideTree::kWidth;
     static constexpr int kPlaces = kRoom * kWidth;
