@@ -206,6 +206,25 @@ bool SparseFactor::compliances(std::span<const double> b, std::span<double> out)
     return true;
 }
 
+Supernodes SparseFactor::supernodes() const {
+    const Impl& s = *impl_;
+    if (!s.usable || s.factor->is_super == 0)
+        throw std::runtime_error("supernodes of a matrix of " + std::to_string(s.order.size()) +
+                                 " unknowns: it has no supernodal factor");
+    const cholmod_factor& f = *s.factor;
+    const auto copy = [](const void* from, std::size_t count) {
+        const auto* begin = static_cast<const int*>(from);
+        return std::vector<int>(begin, begin + count);
+    };
+    const auto* value = static_cast<const double*>(f.x);
+    return {s.order,
+            copy(f.super, f.nsuper + 1),
+            copy(f.pi, f.nsuper + 1),
+            copy(f.px, f.nsuper + 1),
+            copy(f.s, f.ssize),
+            {value, value + f.xsize}};
+}
+
 std::int64_t SparseFactor::factor_entries() const noexcept {
     return static_cast<std::int64_t>(impl_->factor->xsize);
 }

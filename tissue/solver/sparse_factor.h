@@ -18,6 +18,16 @@ struct SparsePattern {
     std::vector<int> row;
 };
 
+/// L of the last factorisation, P A P^T = L L^T, as dense column-major blocks: block s has columns
+/// [first[s], first[s + 1]) and as many rows as row[row_start[s]..row_start[s + 1]) names, first
+/// its own columns. Above the diagonal of a block stands no number of meaning.
+struct Supernodes {
+    std::vector<int> order; // unknown that is eliminated k-th
+    std::vector<int> first, row_start, value_start;
+    std::vector<int> row;
+    std::vector<double> value;
+};
+
 class SparseFactor {
   public:
     /// Orders (AMD) and analyses. Throws std::runtime_error with CHOLMOD's word for it.
@@ -38,6 +48,10 @@ class SparseFactor {
     bool compliances(std::span<const double> b, std::span<double> out) noexcept;
 
     std::int64_t factor_entries() const noexcept; // stored, explicit zeros too
+
+    /// A copy of the factor, for those who solve in their own way. At setup. Throws
+    /// std::runtime_error without a usable factor.
+    Supernodes supernodes() const;
 
   private:
     struct Impl;

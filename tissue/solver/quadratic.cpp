@@ -1,0 +1,197 @@
+// tissue/solver/quadratic.cpp
+// One step of a quadratic body: where it would go, and Newton from there. Tissue loop.
+#include "tissue/solver/quadratic.h"
+
+#include "tissue/solver/polar_rotation.h"
+#include "tissue/solver/quadratic_linear.h"
+#include "tissue/solver/quadratic_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tissue {
+namespace {
+
+using glm::dmat3;
+using glm::dvec3;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double norm2(const NodeVector<double>& v) noexcept {
+    double s0 = 0.0, s1 = 0.0, s2 = 0.0;
+    for (std::size_t i = 0; i < v.size(); i += 4) {
+        s0 += v[i] * v[i];
+        s1 += v[i + 1] * v[i + 1];
+        s2 += v[i + 2] * v[i + 2];
+    }
+    return s0 + s1 + s2;
+}
+
+double product_of(const NodeVector<double>& a, const NodeVector<double>& b) noexcept {
+    double s0 = 0.0, s1 = 0.0, s2 = 0.0;
+    for (std::size_t i = 0; i < a.size(); i += 4) {
+        s0 += a[i] * b[i];
+        s1 += a[i + 1] * b[i + 1];
+        s2 += a[i + 2] * b[i + 2];
+    }
+    return s0 + s1 + s2;
+}
+
+// B d in inertia_n, d = moved - start in way
+void add_inertia(const QuadraticModel& model, QuadraticSystem& s) noexcept {
+    for (std::size_t i = 0; i < s.way.size(); ++i)
+        s.way[i] = s.moved_m[i] - s.start_m[i];
+    const double mass = 1.0 / (s.dt_s * s.dt_s) + model.material.damping_mass_1ps / s.dt_s;
+    mass_product(model, mass, s.way, s.inertia_n);
+    if (s.tangent_at_start.empty())
+        return;
+    std::copy(s.way.begin(), s.way.end(), s.p.begin());
+    std::fill(s.q.begin(), s.q.end(), 0.0f);
+    const double stiffness = model.material.damping_stiffness_s / s.dt_s;
+    add_tangent_product(model, s.tangent_at_start, static_cast<float>(stiffness), s.p, s.q);
+    for (std::size_t i = 0; i < s.q.size(); ++i)
+        s.inertia_n[i] += s.q[i];
+}
+
+// Everything that depends on moved_m.
+void evaluate(const QuadraticModel& model, QuadraticSystem& s) noexcept {
+    const PointSums sums = stresses(model, s.moved_m, s.internal_n, s.tangent, s.turn);
+    s.min_det_f = sums.min_det_f;
+    s.energy_j = sums.min_det_f > 0.0 ? sums.energy_j : kInfinity;
+    add_inertia(model, s);
+    for (std::size_t i = 0; i < s.residual_n.size(); ++i)
+        s.residual_n[i] = s.momentum_n[i] - s.internal_n[i] - s.inertia_n[i];
+    clear_fixed(model, s.residual_n);
+    const double size = std::sqrt(norm2(s.momentum_n)) + std::sqrt(norm2(s.internal_n)) +
+                        std::sqrt(norm2(s.inertia_n));
+    s.residual = size > 0.0 ? std::sqrt(norm2(s.residual_n)) / size : 0.0;
+    s.potential_j =
+        s.energy_j + 0.5 * product_of(s.way, s.inertia_n) - product_of(s.way, s.momentum_n);
+}
+
+// Of each node, from the mean deformation of the tets around it.
+void turn_nodes(const QuadraticModel& model, QuadraticSystem& s) noexcept {
+    constexpr std::int32_t kLanes = QuadraticGroup::kLanes;
+    for (std::size_t i = 0; i < s.rotation.size(); ++i) {
+        std::array<float, 9> sum{};
+        for (std::int32_t k = model.tet_start[i]; k < model.tet_start[i + 1]; ++k) {
+            const std::int32_t tet = model.tet_of_node[k];
+            for (int j = 0; j < 9; ++j)
+                sum[j] += s.turn[tet / kLanes].volume_f_m3[j][tet % kLanes];
+        }
+        dmat3 F;
+        for (int j = 0; j < 9; ++j)
+            F[j / 3][j % 3] = sum[j];
+        // Newton for the rotation starts best where the size is one
+        const double det = glm::determinant(F);
+        s.rotation[i] = glm::mat3(polar_rotation(det > 0.0 ? F / std::cbrt(det) : F));
+    }
+}
+
+void place(const QuadraticModel& model, const QuadraticState& state, double ahead_s,
+           NodeVector<double>& moved_m) noexcept {
+    for (std::size_t i = 0; i < model.dof.size(); ++i) {
+        dvec3 u = state.position_m[i] - model.mesh.rest_m[i];
+        if (model.dof[i] >= 0)
+            u += ahead_s * state.velocity_mps[i];
+        for (int c = 0; c < 3; ++c)
+            moved_m[4 * i + c] = u[c];
+    }
+}
+
+// f + M v/dt
+void add_momentum(const QuadraticModel& model, const QuadraticState& state,
+                  QuadraticSystem& s) noexcept {
+    for (std::size_t i = 0; i < model.dof.size(); ++i) {
+        for (int c = 0; c < 3; ++c)
+            s.way[4 * i + c] = state.velocity_mps[i][c];
+    }
+    mass_product(model, 1.0 / s.dt_s, s.way, s.momentum_n);
+    for (std::size_t i = 0; i < s.momentum_n.size(); ++i)
+        s.momentum_n[i] += model.weight_n[i];
+}
+
+// Armijo's rule from moved_m along x; false if no part of the way goes down.
+bool go_down(const QuadraticModel& model, QuadraticSystem& s) noexcept {
+    constexpr double kDescent = 1e-4, kSummed = 1e-12; // of the promise; rounding of a sum
+    constexpr int kHalvings = 8;
+    double slope_j = 0.0;
+    for (std::size_t i = 0; i < s.x.size(); ++i)
+        slope_j += s.residual_n[i] * s.x[i];
+    const double before_j = s.potential_j;
+    const double noise_j =
+        kSummed * (s.energy_j + std::abs(before_j) + model.elasticity.mu_pa * model.volume_m3);
+    s.trial_m = s.moved_m;
+    double share = 1.0;
+    for (int k = 0; k <= kHalvings; ++k, share *= 0.5) {
+        for (std::size_t i = 0; i < s.x.size(); ++i)
+            s.moved_m[i] = s.trial_m[i] + share * s.x[i];
+        evaluate(model, s);
+        if (s.potential_j - before_j <= noise_j - kDescent * share * slope_j)
+            return true;
+    }
+    s.moved_m = s.trial_m;
+    evaluate(model, s);
+    return false;
+}
+
+} // namespace
+
+void linearize(const QuadraticModel& model, const QuadraticState& state,
+               QuadraticSystem& s) noexcept {
+    place(model, state, 0.0, s.start_m);
+    add_momentum(model, state, s);
+    if (!s.tangent_at_start.empty()) {
+        s.moved_m = s.start_m;
+        evaluate(model, s);
+        s.tangent_at_start = s.tangent;
+    }
+    place(model, state, s.dt_s, s.moved_m);
+    evaluate(model, s);
+    if (!(s.min_det_f > 0.0)) {
+        s.moved_m = s.start_m;
+        evaluate(model, s);
+    }
+    turn_nodes(model, s);
+}
+
+QuadraticReport free_motion(const QuadraticModel& model, const QuadraticOptions& options,
+                            QuadraticSystem& s, std::span<double> du) noexcept {
+    QuadraticReport report;
+    while (report.newton_iterations < options.max_newton &&
+           (report.newton_iterations == 0 || s.residual > options.newton_tolerance)) {
+        std::copy(s.residual_n.begin(), s.residual_n.end(), s.r.begin());
+        const LinearReport linear = solve_nodes(model, options, s);
+        ++report.newton_iterations;
+        report.linear_iterations += linear.iterations;
+        report.linear_residual = std::max(report.linear_residual, linear.relative_residual);
+        report.indefinite = report.indefinite || linear.indefinite;
+        if (!go_down(model, s))
+            break;
+    }
+    for (std::size_t k = 0; k < du.size(); ++k) {
+        const std::int32_t at = model.place_of_unknown[k];
+        du[k] = s.moved_m[at] - s.start_m[at];
+    }
+    report.relative_residual = s.residual;
+    report.min_det_f = s.min_det_f;
+    return report;
+}
+
+void advance(const QuadraticModel& model, const QuadraticSystem& system, std::span<const double> du,
+             QuadraticState& state) noexcept {
+    for (std::size_t i = 0; i < model.dof.size(); ++i) {
+        const std::int32_t d = model.dof[i];
+        if (d < 0) {
+            state.velocity_mps[i] = dvec3{0.0};
+            continue;
+        }
+        const dvec3 step{du[d], du[d + 1], du[d + 2]};
+        state.position_m[i] += step;
+        state.velocity_mps[i] = step / system.dt_s;
+    }
+    state.recovering = system.recovering;
+}
+
+} // namespace tissue

@@ -1,0 +1,143 @@
+// tissue/solver/quadratic.h
+// Ten-node tetrahedra, neo-Hooke, implicit Euler in real time: the tier that does not lock.
+// Discretisation and energy are those of tissue/reference, mass consistent; tissue loop.
+//   M (v' - v)/dt + C v' + f_int(x') = f, x' = x + dt v', C = alpha M + beta K(x)
+#pragma once
+
+#include "tissue/material/hyperelastic.h"
+#include "tissue/mesh/quadratic_mesh.h"
+#include "tissue/solver/single_factor.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+namespace tissue {
+
+/// Sixteen tets side by side; where there are fewer, tets without volume between sinks.
+struct alignas(64) QuadraticGroup {
+    static constexpr int kLanes = 16;
+    template <typename T> using Lanes = std::array<T, kLanes>;
+
+    std::array<Lanes<std::int32_t>, 10> node; // times 4: place in a node vector
+    // gradient of the barycentric coordinates 1 to 3 at the four points, 3 coordinate + component
+    std::array<std::array<Lanes<double>, 9>, 4> gradient_1pm;
+    std::array<std::array<Lanes<float>, 9>, 4> gradient_single_1pm;
+    std::array<Lanes<double>, 4> volume_m3;
+};
+
+/// dP/dF at the points of a group, times their volume: F, C = dJ/dF, and the factors of
+///   dP = shear dF + mixed ((F:dF) C + (C:dF) F) + square (C:dF) C + bend dC
+struct alignas(64) QuadraticTangent {
+    enum : int { kF = 0, kC = 9, kShear = 18, kMixed, kSquare, kBend, kCount };
+    std::array<std::array<QuadraticGroup::Lanes<float>, kCount>, 4> point;
+};
+
+/// Mean deformation gradient of the tets of a group, times their volume: 3 column + row.
+struct alignas(64) QuadraticTurn {
+    std::array<QuadraticGroup::Lanes<float>, 9> volume_f_m3;
+};
+
+/// A node vector has 4 numbers per node, the last unused, and one node more: the sink.
+template <typename T> using NodeVector = std::vector<T>;
+
+struct QuadraticModel {
+    QuadraticMesh mesh;
+    Material material;
+    Elasticity elasticity;
+    double volume_m3 = 0.0;
+    std::vector<std::int32_t> dof;              // first of 3 unknowns of a node; -1: anchored
+    std::vector<std::int32_t> place_of_unknown; // in a node vector
+    std::vector<std::int32_t> fixed;            // places of anchored nodes and the sink
+    int unknowns = 0;
+    std::vector<QuadraticGroup> groups; // tet e is lane e % 16 of group e / 16
+    // tets at a node, and nodes beside a node (itself too) with the consistent mass between them
+    std::vector<std::int32_t> tet_start, tet_of_node;
+    std::vector<std::int32_t> mass_start, mass_column; // columns times 4
+    std::vector<double> mass_kg;
+    std::vector<float> mass_single_kg;
+    NodeVector<double> weight_n; // M g
+    // at rest, on the pattern of the unknowns
+    SparsePattern pattern;
+    std::vector<double> rest_stiffness_npm, rest_mass_kg;
+};
+
+struct QuadraticState {
+    std::vector<glm::dvec3> position_m;
+    std::vector<glm::dvec3> velocity_mps;
+    bool recovering = false; // was turned inside out and is not yet well shaped again
+};
+
+struct QuadraticOptions {
+    double linear_tolerance = 1e-3; // |A y - r| / |r| of each linear solve
+    int max_linear = 200;
+    double newton_tolerance = 1e-3; // of the relative residual below, before another iteration
+    int max_newton = 4;
+};
+
+/// A at a state, what approximates its inverse, and scratch.
+struct QuadraticSystem {
+    double dt_s = 0.0;
+    bool recovering = false;
+    double energy_j = 0.0;    // elastic
+    double potential_j = 0.0; // incremental: its minimum is the step
+    double min_det_f = 1.0;   // over the points
+    double residual = 0.0;    // relative, see QuadraticReport
+    std::vector<QuadraticTangent> tangent{}, tangent_at_start{}; // the latter only if beta > 0
+    std::vector<QuadraticTurn> turn{};
+    std::vector<glm::mat3> rotation{};                  // of each node
+    NodeVector<double> start_m{}, moved_m{}, trial_m{}; // displacements from rest
+    NodeVector<double> momentum_n{};                    // M v/dt + weight
+    NodeVector<double> internal_n{}, inertia_n{}, residual_n{}, way{};
+    NodeVector<float> x{}, r{}, z{}, p{}, q{};
+    std::vector<float> ordered{};
+    std::vector<double> unknown{};
+    std::vector<SingleFactor::Line> lines{};
+    SparseFactor exact; // of A at rest
+    SingleFactor single{};
+};
+
+struct LinearReport {
+    int iterations = 0;
+    double relative_residual = 0.0; // |A x - b| / |b|
+    bool indefinite = false;        // stopped at a direction of negative curvature
+};
+
+struct QuadraticReport {
+    int newton_iterations = 0;
+    int linear_iterations = 0;
+    double linear_residual = 0.0; // the worst of the step
+    // |residual on the unknowns| / (|f + M v/dt| + |f_int| + |inertia, damping|) on all nodes
+    double relative_residual = 0.0;
+    double min_det_f = 0.0;
+    bool indefinite = false;
+    bool recovering = false;
+};
+
+/// Throws as make_reference() does. `anchored`: a byte per node, may be empty.
+QuadraticModel make_quadratic(const QuadraticMesh& mesh, const Material& material,
+                              std::span<const std::uint8_t> anchored,
+                              const glm::dvec3& gravity_mps2 = glm::dvec3{0.0});
+QuadraticState rest_state(const QuadraticModel& model);
+
+/// For steps of dt_s, finite and > 0. Throws std::invalid_argument naming the value.
+QuadraticSystem make_system(const QuadraticModel& model, double dt_s);
+
+/// Residual and tangent where the velocity leads in dt; at `state` itself if that turns a tet
+/// inside out. No allocation, here and below.
+void linearize(const QuadraticModel& model, const QuadraticState& state,
+               QuadraticSystem& system) noexcept;
+
+/// A x = b for one right-hand side on the unknowns, at the last linearisation.
+LinearReport solve(const QuadraticModel& model, const QuadraticOptions& options,
+                   std::span<const double> b, QuadraticSystem& system,
+                   std::span<double> x) noexcept;
+
+/// The step without contact, from the linearisation on: du on the unknowns.
+QuadraticReport free_motion(const QuadraticModel& model, const QuadraticOptions& options,
+                            QuadraticSystem& system, std::span<double> du) noexcept;
+
+/// x += du, v = du/dt.
+void advance(const QuadraticModel& model, const QuadraticSystem& system, std::span<const double> du,
+             QuadraticState& state) noexcept;
+
+} // namespace tissue

@@ -1,0 +1,113 @@
+// tissue/solver/quadratic_linear.cpp
+// A x = b at a linearisation by conjugate gradients in single precision. The preconditioner is the
+// factor at rest, turned with every node (Mueller & Gross 2004 warp a stiffness so; here it only
+// has to be near). Tissue loop.
+#include "tissue/solver/quadratic_linear.h"
+
+#include "tissue/solver/quadratic_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tissue {
+namespace {
+
+double product_of(const NodeVector<float>& a, const NodeVector<float>& b) noexcept {
+    // four sums, one per place of a node: they do not wait for each other
+    double s0 = 0.0, s1 = 0.0, s2 = 0.0;
+    for (std::size_t i = 0; i < a.size(); i += 4) {
+        s0 += double(a[i]) * double(b[i]);
+        s1 += double(a[i + 1]) * double(b[i + 1]);
+        s2 += double(a[i + 2]) * double(b[i + 2]);
+    }
+    return s0 + s1 + s2;
+}
+
+// z = R A0^-1 R^T r
+void precondition(const QuadraticModel& model, QuadraticSystem& s) noexcept {
+    for (std::size_t i = 0; i < s.rotation.size(); ++i) {
+        const glm::mat3& R = s.rotation[i];
+        const float *r = &s.r[4 * i], x = r[0], y = r[1], z = r[2];
+        for (int c = 0; c < 3; ++c)
+            s.z[4 * i + c] = R[c][0] * x + R[c][1] * y + R[c][2] * z;
+    }
+    const int n = model.unknowns;
+    for (int k = 0; k < n; ++k)
+        s.ordered[k] = s.z[model.place_of_unknown[s.single.order[k]]];
+    solve(s.single, s.ordered, s.lines);
+    for (int k = 0; k < n; ++k)
+        s.z[model.place_of_unknown[s.single.order[k]]] = s.ordered[k];
+    for (std::size_t i = 0; i < s.rotation.size(); ++i) {
+        const glm::mat3& R = s.rotation[i];
+        float* v = &s.z[4 * i];
+        const float x = v[0], y = v[1], z = v[2];
+        for (int c = 0; c < 3; ++c)
+            v[c] = R[0][c] * x + R[1][c] * y + R[2][c] * z;
+    }
+}
+
+// q = A p
+void multiply(const QuadraticModel& model, QuadraticSystem& s) noexcept {
+    const double mass = 1.0 / (s.dt_s * s.dt_s) + model.material.damping_mass_1ps / s.dt_s;
+    const double stiffness = 1.0 + model.material.damping_stiffness_s / s.dt_s;
+    mass_product<float>(model, static_cast<float>(mass), s.p, s.q);
+    add_tangent_product(model, s.tangent, static_cast<float>(stiffness), s.p, s.q);
+    clear_fixed(model, s.q);
+}
+
+} // namespace
+
+LinearReport solve_nodes(const QuadraticModel& model, const QuadraticOptions& options,
+                         QuadraticSystem& s) noexcept {
+    LinearReport report;
+    std::fill(s.x.begin(), s.x.end(), 0.0f);
+    const double size2 = product_of(s.r, s.r);
+    if (size2 == 0.0)
+        return report;
+    const double enough2 = options.linear_tolerance * options.linear_tolerance * size2;
+    precondition(model, s);
+    s.p = s.z;
+    double rz = product_of(s.r, s.z), left2 = size2;
+    while (left2 > enough2 && report.iterations < options.max_linear) {
+        multiply(model, s);
+        const double curvature = product_of(s.p, s.q);
+        if (!(curvature > 0.0)) {
+            report.indefinite = true;
+            // what there is goes down (Steihaug 1983); at first, as far as at rest
+            if (report.iterations == 0)
+                s.x = s.p;
+            break;
+        }
+        const auto alpha = static_cast<float>(rz / curvature);
+        for (std::size_t i = 0; i < s.x.size(); ++i) {
+            s.x[i] += alpha * s.p[i];
+            s.r[i] -= alpha * s.q[i];
+        }
+        ++report.iterations;
+        left2 = product_of(s.r, s.r);
+        if (!(left2 > enough2))
+            break;
+        precondition(model, s);
+        const double next = product_of(s.r, s.z);
+        const auto beta = static_cast<float>(next / rz);
+        rz = next;
+        for (std::size_t i = 0; i < s.p.size(); ++i)
+            s.p[i] = s.z[i] + beta * s.p[i];
+    }
+    report.relative_residual = std::sqrt(left2 / size2);
+    return report;
+}
+
+LinearReport solve(const QuadraticModel& model, const QuadraticOptions& options,
+                   std::span<const double> b, QuadraticSystem& system,
+                   std::span<double> x) noexcept {
+    std::fill(system.r.begin(), system.r.end(), 0.0f);
+    for (std::size_t k = 0; k < b.size(); ++k)
+        system.r[model.place_of_unknown[k]] = static_cast<float>(b[k]);
+    const LinearReport report = solve_nodes(model, options, system);
+    for (std::size_t k = 0; k < x.size(); ++k)
+        x[k] = system.x[model.place_of_unknown[k]];
+    return report;
+}
+
+} // namespace tissue

@@ -1,0 +1,25 @@
+// tissue/solver/quadratic_points.h
+// What is summed over the quadrature points of a quadratic body, sixteen tets at a time. Internal
+// to the quadratic solver.
+#pragma once
+
+#include "tissue/solver/quadratic.h"
+
+namespace tissue {
+
+struct PointSums {
+    double energy_j = 0.0;
+    double min_det_f = 0.0;
+};
+
+/// f_int, tangents and mean deformation gradients at displacements `moved_m`. Energy, forces and
+/// tangents have a meaning only if min_det_f > 0.
+PointSums stresses(const QuadraticModel& model, std::span<const double> moved_m,
+                   std::span<double> internal_n, std::span<QuadraticTangent> tangent,
+                   std::span<QuadraticTurn> turn) noexcept;
+
+/// q += factor K p
+void add_tangent_product(const QuadraticModel& model, std::span<const QuadraticTangent> tangent,
+                         float factor, std::span<const float> p, std::span<float> q) noexcept;
+
+} // namespace tissue
