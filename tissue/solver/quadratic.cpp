@@ -85,7 +85,7 @@ void turn_nodes(const QuadraticModel& model, QuadraticSystem& s) noexcept {
             F[j / 3][j % 3] = sum[j];
         // Newton for the rotation starts best where the size is one
         const double det = glm::determinant(F);
-        s.rotation[i] = glm::mat3(polar_rotation(det > 0.0 ? F / std::cbrt(det) : F));
+        s.rotation[i] = glm::mat3(F / std::cbrt(det)); // EXPERIMENT
     }
 }
 

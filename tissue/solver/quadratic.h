@@ -37,7 +37,8 @@ struct alignas(64) QuadraticTurn {
     std::array<QuadraticGroup::Lanes<float>, 9> volume_f_m3;
 };
 
-/// A node vector has 4 numbers per node, the last unused, and one node more: the sink.
+/// A node vector has 4 numbers per node, the last unused, one node more, the sink, and zeros up to
+/// a multiple of 16.
 template <typename T> using NodeVector = std::vector<T>;
 
 struct QuadraticModel {

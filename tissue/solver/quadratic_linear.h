@@ -6,26 +6,11 @@
 
 namespace tissue {
 
-/// y = factor M x
-template <typename T>
-void mass_product(const QuadraticModel& model, T factor, const NodeVector<T>& x,
-                  NodeVector<T>& y) noexcept {
-    const T* kg = nullptr;
-    if constexpr (sizeof(T) == sizeof(float))
-        kg = model.mass_single_kg.data();
-    else
-        kg = model.mass_kg.data();
-    for (std::size_t i = 0; i + 1 < model.mass_start.size(); ++i) {
-        T sum[4]{};
-        for (std::int32_t k = model.mass_start[i]; k < model.mass_start[i + 1]; ++k) {
-            const T* from = x.data() + model.mass_column[k];
-            for (int c = 0; c < 4; ++c)
-                sum[c] += kg[k] * from[c];
-        }
-        for (int c = 0; c < 4; ++c)
-            y[4 * i + c] = factor * sum[c];
-    }
-}
+/// y = factor M x. In quadratic_mass.cpp.
+void mass_product(const QuadraticModel& model, double factor, const NodeVector<double>& x,
+                  NodeVector<double>& y) noexcept;
+void mass_product(const QuadraticModel& model, float factor, const NodeVector<float>& x,
+                  NodeVector<float>& y) noexcept;
 
 /// Zero for anchored nodes and the sink.
 template <typename T> void clear_fixed(const QuadraticModel& model, NodeVector<T>& v) noexcept {

@@ -136,7 +136,7 @@ QuadraticModel make_quadratic(const QuadraticMesh& mesh, const Material& materia
         for (std::size_t k = 0; k < 4; ++k)
             m.weight_n.push_back(k < 3 ? reference.weight_n[3 * i + k] : 0.0);
     }
-    m.weight_n.resize(m.weight_n.size() + 4, 0.0);
+    m.weight_n.resize((m.weight_n.size() + 4 + 15) / 16 * 16, 0.0);
 
     ReferenceSystem system = make_system(reference);
     linearize(reference, rest_state(reference), system);
@@ -167,7 +167,7 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s) {
                                     std::to_string(model.material.young_pa));
     s.single = make_single_factor(s.exact.supernodes());
 
-    const std::size_t nodes = model.mesh.rest_m.size(), places = 4 * (nodes + 1);
+    const std::size_t nodes = model.mesh.rest_m.size(), places = model.weight_n.size();
     s.tangent.resize(model.groups.size());
     if (model.material.damping_stiffness_s > 0.0)
         s.tangent_at_start.resize(model.groups.size());
