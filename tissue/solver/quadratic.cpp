@@ -5,6 +5,7 @@
 #include "tissue/solver/polar_rotation.h"
 #include "tissue/solver/quadratic_linear.h"
 #include "tissue/solver/quadratic_points.h"
+#include "tissue/solver/quadratic_recovery.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +45,7 @@ void add_inertia(const QuadraticModel& model, QuadraticSystem& s) noexcept {
         s.way[i] = s.moved_m[i] - s.start_m[i];
     const double mass = 1.0 / (s.dt_s * s.dt_s) + model.material.damping_mass_1ps / s.dt_s;
     mass_product(model, mass, s.way, s.inertia_n);
-    if (s.tangent_at_start.empty())
+    if (!(model.material.damping_stiffness_s > 0.0))
         return;
     std::copy(s.way.begin(), s.way.end(), s.p.begin());
     std::fill(s.q.begin(), s.q.end(), 0.0f);
@@ -56,7 +57,7 @@ void add_inertia(const QuadraticModel& model, QuadraticSystem& s) noexcept {
 
 // Everything that depends on moved_m.
 void evaluate(const QuadraticModel& model, QuadraticSystem& s) noexcept {
-    const PointSums sums = stresses(model, s.moved_m, s.internal_n, s.tangent, s.turn);
+    const PointSums sums = stresses(model, s.moved_m, s.internal_n, s.tangent, s.stretch);
     s.min_det_f = sums.min_det_f;
     s.energy_j = sums.min_det_f > 0.0 ? sums.energy_j : kInfinity;
     add_inertia(model, s);
@@ -70,22 +71,25 @@ void evaluate(const QuadraticModel& model, QuadraticSystem& s) noexcept {
         s.energy_j + 0.5 * product_of(s.way, s.inertia_n) - product_of(s.way, s.momentum_n);
 }
 
-// Of each node, from the mean deformation of the tets around it.
-void turn_nodes(const QuadraticModel& model, QuadraticSystem& s) noexcept {
+// Of each node, the mean deformation gradient of the tets around it, scaled to volume 1.
+void warp_nodes(const QuadraticModel& model, QuadraticSystem& s) noexcept {
     constexpr std::int32_t kLanes = QuadraticGroup::kLanes;
-    for (std::size_t i = 0; i < s.rotation.size(); ++i) {
+    for (std::size_t i = 0; i < s.warp.size(); ++i) {
         std::array<float, 9> sum{};
         for (std::int32_t k = model.tet_start[i]; k < model.tet_start[i + 1]; ++k) {
             const std::int32_t tet = model.tet_of_node[k];
             for (int j = 0; j < 9; ++j)
-                sum[j] += s.turn[tet / kLanes].volume_f_m3[j][tet % kLanes];
+                sum[j] += s.stretch[tet / kLanes].volume_f_m3[j][tet % kLanes];
         }
         dmat3 F;
         for (int j = 0; j < 9; ++j)
             F[j / 3][j % 3] = sum[j];
-        // Newton for the rotation starts best where the size is one
-        const double det = glm::determinant(F);
-        s.rotation[i] = glm::mat3(F / std::cbrt(det)); // EXPERIMENT
+        // a mean of gradients may be flat even if none of them is
+        const double det = glm::determinant(F),
+                     size2 = glm::dot(F[0], F[0]) + glm::dot(F[1], F[1]) + glm::dot(F[2], F[2]);
+        constexpr double kFlat = 1e-2;
+        s.warp[i] = glm::mat3(det > kFlat * size2 * std::sqrt(size2) ? F / std::cbrt(det)
+                                                                     : closest_rotation(F));
     }
 }
 
@@ -94,7 +98,7 @@ void place(const QuadraticModel& model, const QuadraticState& state, double ahea
     for (std::size_t i = 0; i < model.dof.size(); ++i) {
         dvec3 u = state.position_m[i] - model.mesh.rest_m[i];
         if (model.dof[i] >= 0)
-            u += ahead_s * state.velocity_mps[i];
+            u += ahead_s * (state.velocity_mps[i] + state.gain_mps[i]);
         for (int c = 0; c < 3; ++c)
             moved_m[4 * i + c] = u[c];
     }
@@ -110,6 +114,34 @@ void add_momentum(const QuadraticModel& model, const QuadraticState& state,
     mass_product(model, 1.0 / s.dt_s, s.way, s.momentum_n);
     for (std::size_t i = 0; i < s.momentum_n.size(); ++i)
         s.momentum_n[i] += model.weight_n[i];
+}
+
+// The tangent at moved_m, but with the geometric stiffness of the start. A prediction violates the
+// volume by a little, which the bulk modulus makes a pressure that is not there; Newton converges
+// in far fewer iterations if the stress of the geometric stiffness is not taken from it (Magisano,
+// Leonetti & Garcea 2017).
+void keep_stress(QuadraticSystem& s) noexcept {
+    for (std::size_t g = 0; g < s.tangent.size(); ++g) {
+        for (std::size_t q = 0; q < 4; ++q) {
+            s.tangent[g].point[q][QuadraticTangent::kBend] =
+                s.tangent_at_start[g].point[q][QuadraticTangent::kBend];
+        }
+    }
+}
+
+// What remains is positive: shear |dF|^2 + 2 mixed (F:dF)(C:dF) + square (C:dF)^2, where
+// mixed^2 = 4/9 shear^2/J^2 <= shear square/|F|^2, since square >= 5/9 shear |F|^2/J^2.
+void drop_geometric_stiffness(QuadraticSystem& s) noexcept {
+    for (QuadraticTangent& tangent : s.tangent) {
+        for (auto& point : tangent.point)
+            point[QuadraticTangent::kBend].fill(0.0f);
+    }
+}
+
+LinearReport solve_residual(const QuadraticModel& model, const QuadraticOptions& options,
+                            QuadraticSystem& s) noexcept {
+    std::copy(s.residual_n.begin(), s.residual_n.end(), s.r.begin());
+    return solve_nodes(model, options, s);
 }
 
 // Armijo's rule from moved_m along x; false if no part of the way goes down.
@@ -140,33 +172,59 @@ bool go_down(const QuadraticModel& model, QuadraticSystem& s) noexcept {
 
 void linearize(const QuadraticModel& model, const QuadraticState& state,
                QuadraticSystem& s) noexcept {
+    // of what the rest shape would have: less, and neo-Hooke would start with a blow
+    constexpr double kShaped = 0.5;
     place(model, state, 0.0, s.start_m);
     add_momentum(model, state, s);
-    if (!s.tangent_at_start.empty()) {
-        s.moved_m = s.start_m;
-        evaluate(model, s);
-        s.tangent_at_start = s.tangent;
+    s.moved_m = s.start_m;
+    evaluate(model, s);
+    s.recovering = !(s.min_det_f > 0.0) || (state.recovering && s.min_det_f < kShaped);
+    if (s.recovering) {
+        linearize_recovering(model, s);
+        return;
     }
+    std::swap(s.tangent, s.tangent_at_start);
     place(model, state, s.dt_s, s.moved_m);
     evaluate(model, s);
     if (!(s.min_det_f > 0.0)) {
         s.moved_m = s.start_m;
         evaluate(model, s);
     }
-    turn_nodes(model, s);
+    keep_stress(s);
+    warp_nodes(model, s);
+}
+
+void way_and_residual(const QuadraticModel& model, const QuadraticSystem& system,
+                      std::span<double> way_m, std::span<double> residual_n) noexcept {
+    for (std::size_t k = 0; k < way_m.size(); ++k) {
+        const std::int32_t at = model.place_of_unknown[k];
+        way_m[k] = system.way[at];
+        residual_n[k] = system.residual_n[at];
+    }
 }
 
 QuadraticReport free_motion(const QuadraticModel& model, const QuadraticOptions& options,
                             QuadraticSystem& s, std::span<double> du) noexcept {
-    QuadraticReport report;
+    QuadraticReport report{.min_det_f = s.min_det_f, .recovering = s.recovering};
+    if (s.recovering) {
+        for (std::size_t k = 0; k < du.size(); ++k)
+            du[k] = s.residual_n[model.place_of_unknown[k]];
+        solve_recovering(s, du);
+        report.relative_residual = 1.0;
+        return report;
+    }
     while (report.newton_iterations < options.max_newton &&
            (report.newton_iterations == 0 || s.residual > options.newton_tolerance)) {
-        std::copy(s.residual_n.begin(), s.residual_n.end(), s.r.begin());
-        const LinearReport linear = solve_nodes(model, options, s);
-        ++report.newton_iterations;
+        LinearReport linear = solve_residual(model, options, s);
         report.linear_iterations += linear.iterations;
+        if (linear.indefinite) {
+            drop_geometric_stiffness(s);
+            linear = solve_residual(model, options, s);
+            report.linear_iterations += linear.iterations;
+            ++report.projected;
+        }
+        ++report.newton_iterations;
         report.linear_residual = std::max(report.linear_residual, linear.relative_residual);
-        report.indefinite = report.indefinite || linear.indefinite;
         if (!go_down(model, s))
             break;
     }
@@ -189,6 +247,7 @@ void advance(const QuadraticModel& model, const QuadraticSystem& system, std::sp
         }
         const dvec3 step{du[d], du[d + 1], du[d + 2]};
         state.position_m[i] += step;
+        state.gain_mps[i] = step / system.dt_s - state.velocity_mps[i];
         state.velocity_mps[i] = step / system.dt_s;
     }
     state.recovering = system.recovering;

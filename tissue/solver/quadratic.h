@@ -33,7 +33,7 @@ struct alignas(64) QuadraticTangent {
 };
 
 /// Mean deformation gradient of the tets of a group, times their volume: 3 column + row.
-struct alignas(64) QuadraticTurn {
+struct alignas(64) QuadraticStretch {
     std::array<QuadraticGroup::Lanes<float>, 9> volume_f_m3;
 };
 
@@ -65,7 +65,8 @@ struct QuadraticModel {
 struct QuadraticState {
     std::vector<glm::dvec3> position_m;
     std::vector<glm::dvec3> velocity_mps;
-    bool recovering = false; // was turned inside out and is not yet well shaped again
+    std::vector<glm::dvec3> gain_mps; // of velocity in the last step: where the next one looks
+    bool recovering = false;          // was turned inside out and is not yet well shaped again
 };
 
 struct QuadraticOptions {
@@ -78,27 +79,29 @@ struct QuadraticOptions {
 /// A at a state, what approximates its inverse, and scratch.
 struct QuadraticSystem {
     double dt_s = 0.0;
-    bool recovering = false;
+    bool recovering = false;  // A is that of the rest shape, turned as a whole
+    glm::dmat3 turned{1.0};   // so far; 1 if not recovering
     double energy_j = 0.0;    // elastic
     double potential_j = 0.0; // incremental: its minimum is the step
     double min_det_f = 1.0;   // over the points
     double residual = 0.0;    // relative, see QuadraticReport
-    std::vector<QuadraticTangent> tangent{}, tangent_at_start{}; // the latter only if beta > 0
-    std::vector<QuadraticTurn> turn{};
-    std::vector<glm::mat3> rotation{};                  // of each node
+    std::vector<QuadraticTangent> tangent{}, tangent_at_start{};
+    std::vector<QuadraticStretch> stretch{};
+    std::vector<glm::mat3> warp{}; // of each node: mean F around it, of volume 1
     NodeVector<double> start_m{}, moved_m{}, trial_m{}; // displacements from rest
     NodeVector<double> momentum_n{};                    // M v/dt + weight
     NodeVector<double> internal_n{}, inertia_n{}, residual_n{}, way{};
     NodeVector<float> x{}, r{}, z{}, p{}, q{};
+    std::vector<std::int32_t> place_in_order{}; // in a node vector, in elimination order
     std::vector<float> ordered{};
-    std::vector<double> unknown{};
+    std::vector<double> unknown{}; // two vectors of unknowns
     std::vector<SingleFactor::Line> lines{};
     SparseFactor exact; // of A at rest
     SingleFactor single{};
 };
 
 struct LinearReport {
-    int iterations = 0;
+    int iterations = 0;             // 0 if solved by the factor alone
     double relative_residual = 0.0; // |A x - b| / |b|
     bool indefinite = false;        // stopped at a direction of negative curvature
 };
@@ -110,8 +113,8 @@ struct QuadraticReport {
     // |residual on the unknowns| / (|f + M v/dt| + |f_int| + |inertia, damping|) on all nodes
     double relative_residual = 0.0;
     double min_det_f = 0.0;
-    bool indefinite = false;
-    bool recovering = false;
+    int projected = 0;       // Newton iterations that had to drop the geometric stiffness
+    bool recovering = false; // a linear step: the residual above was not looked for and is 1
 };
 
 /// Throws as make_reference() does. `anchored`: a byte per node, may be empty.
@@ -123,8 +126,9 @@ QuadraticState rest_state(const QuadraticModel& model);
 /// For steps of dt_s, finite and > 0. Throws std::invalid_argument naming the value.
 QuadraticSystem make_system(const QuadraticModel& model, double dt_s);
 
-/// Residual and tangent where the velocity leads in dt; at `state` itself if that turns a tet
-/// inside out. No allocation, here and below.
+/// Residual and tangent where the last motion leads in dt; at `state` itself if that turns a tet
+/// inside out. If one is inside out at `state`, the body recovers: A and residual are those of the
+/// linear law about the rest shape. No allocation, here and below.
 void linearize(const QuadraticModel& model, const QuadraticState& state,
                QuadraticSystem& system) noexcept;
 
@@ -132,6 +136,11 @@ void linearize(const QuadraticModel& model, const QuadraticState& state,
 LinearReport solve(const QuadraticModel& model, const QuadraticOptions& options,
                    std::span<const double> b, QuadraticSystem& system,
                    std::span<double> x) noexcept;
+
+/// For those who put contact between: the way to where the system was linearised, and the residual
+/// there, on the unknowns. One Newton iteration is du = way + A^-1 residual.
+void way_and_residual(const QuadraticModel& model, const QuadraticSystem& system,
+                      std::span<double> way_m, std::span<double> residual_n) noexcept;
 
 /// The step without contact, from the linearisation on: du on the unknowns.
 QuadraticReport free_motion(const QuadraticModel& model, const QuadraticOptions& options,

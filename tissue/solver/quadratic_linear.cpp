@@ -5,6 +5,7 @@
 #include "tissue/solver/quadratic_linear.h"
 
 #include "tissue/solver/quadratic_points.h"
+#include "tissue/solver/quadratic_recovery.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,26 +26,26 @@ double product_of(const NodeVector<float>& a, const NodeVector<float>& b) noexce
     return all;
 }
 
-// z = R A0^-1 R^T r
+// z = W A0^-1 W^T r
 void precondition(const QuadraticModel& model, QuadraticSystem& s) noexcept {
-    for (std::size_t i = 0; i < s.rotation.size(); ++i) {
-        const glm::mat3& R = s.rotation[i];
+    for (std::size_t i = 0; i < s.warp.size(); ++i) {
+        const glm::mat3& W = s.warp[i];
         const float *r = &s.r[4 * i], x = r[0], y = r[1], z = r[2];
         for (int c = 0; c < 3; ++c)
-            s.z[4 * i + c] = R[c][0] * x + R[c][1] * y + R[c][2] * z;
+            s.z[4 * i + c] = W[c][0] * x + W[c][1] * y + W[c][2] * z;
     }
     const int n = model.unknowns;
     for (int k = 0; k < n; ++k)
-        s.ordered[k] = s.z[model.place_of_unknown[s.single.order[k]]];
+        s.ordered[k] = s.z[s.place_in_order[k]];
     solve(s.single, s.ordered, s.lines);
     for (int k = 0; k < n; ++k)
-        s.z[model.place_of_unknown[s.single.order[k]]] = s.ordered[k];
-    for (std::size_t i = 0; i < s.rotation.size(); ++i) {
-        const glm::mat3& R = s.rotation[i];
+        s.z[s.place_in_order[k]] = s.ordered[k];
+    for (std::size_t i = 0; i < s.warp.size(); ++i) {
+        const glm::mat3& W = s.warp[i];
         float* v = &s.z[4 * i];
         const float x = v[0], y = v[1], z = v[2];
         for (int c = 0; c < 3; ++c)
-            v[c] = R[0][c] * x + R[1][c] * y + R[2][c] * z;
+            v[c] = W[0][c] * x + W[1][c] * y + W[2][c] * z;
     }
 }
 
@@ -103,6 +104,11 @@ LinearReport solve_nodes(const QuadraticModel& model, const QuadraticOptions& op
 LinearReport solve(const QuadraticModel& model, const QuadraticOptions& options,
                    std::span<const double> b, QuadraticSystem& system,
                    std::span<double> x) noexcept {
+    if (system.recovering) {
+        std::copy(b.begin(), b.end(), x.begin());
+        solve_recovering(system, x);
+        return {};
+    }
     std::fill(system.r.begin(), system.r.end(), 0.0f);
     for (std::size_t k = 0; k < b.size(); ++k)
         system.r[model.place_of_unknown[k]] = static_cast<float>(b[k]);

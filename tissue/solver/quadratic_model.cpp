@@ -149,7 +149,8 @@ QuadraticModel make_quadratic(const QuadraticMesh& mesh, const Material& materia
 }
 
 QuadraticState rest_state(const QuadraticModel& model) {
-    return {model.mesh.rest_m, std::vector<dvec3>(model.mesh.rest_m.size(), dvec3{0.0})};
+    const std::vector<dvec3> none(model.mesh.rest_m.size(), dvec3{0.0});
+    return {model.mesh.rest_m, none, none};
 }
 
 QuadraticSystem make_system(const QuadraticModel& model, double dt_s) {
@@ -167,12 +168,14 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s) {
                                     std::to_string(model.material.young_pa));
     s.single = make_single_factor(s.exact.supernodes());
 
+    for (const int k : s.single.order)
+        s.place_in_order.push_back(model.place_of_unknown[k]);
+
     const std::size_t nodes = model.mesh.rest_m.size(), places = model.weight_n.size();
     s.tangent.resize(model.groups.size());
-    if (model.material.damping_stiffness_s > 0.0)
-        s.tangent_at_start.resize(model.groups.size());
-    s.turn.resize(model.groups.size());
-    s.rotation.assign(nodes, glm::mat3(1.0f));
+    s.tangent_at_start.resize(model.groups.size());
+    s.stretch.resize(model.groups.size());
+    s.warp.assign(nodes, glm::mat3(1.0f));
     for (auto* v : {&s.start_m, &s.moved_m, &s.trial_m, &s.momentum_n, &s.internal_n, &s.inertia_n,
                     &s.residual_n, &s.way})
         v->assign(places, 0.0);

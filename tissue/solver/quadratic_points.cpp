@@ -231,7 +231,7 @@ void tangent_at(const QuadraticTangent& tangent, int q, int i, V<float>* dF) noe
 }
 
 void group_stresses(const Law& law, const QuadraticGroup& group, const TetVector<double>& u, int i,
-                    TetVector<double>& force, QuadraticTangent& tangent, QuadraticTurn& turn,
+                    TetVector<double>& force, QuadraticTangent& tangent, QuadraticStretch& stretch,
                     D& energy, D& least) noexcept {
     using S = Shape<double>;
     D base[12], sum[12], mean[9];
@@ -251,20 +251,21 @@ void group_stresses(const Law& law, const QuadraticGroup& group, const TetVector
     }
     S::add_base(sum, i, force);
     for (int k = 0; k < 9; ++k)
-        keep(mean[k], &turn.volume_f_m3[k][i]);
+        keep(mean[k], &stretch.volume_f_m3[k][i]);
 }
 
 } // namespace
 
 PointSums point_stresses(const QuadraticModel& model, const double* moved_m, double* internal_n,
-                         QuadraticTangent* tangent, QuadraticTurn* turn) {
+                         QuadraticTangent* tangent, QuadraticStretch* stretch) {
     const Law law{hn::Set(kD, model.elasticity.mu_pa), hn::Set(kD, model.elasticity.bulk_pa)};
     D energy = hn::Zero(kD), least = hn::Set(kD, std::numeric_limits<double>::max());
     for (std::size_t g = 0; g < model.groups.size(); ++g) {
         TetVector<double> u, force{};
         gather(model.groups[g], moved_m, u);
         for (int i = 0; i < kLanes; i += static_cast<int>(hn::Lanes(kD)))
-            group_stresses(law, model.groups[g], u, i, force, tangent[g], turn[g], energy, least);
+            group_stresses(law, model.groups[g], u, i, force, tangent[g], stretch[g], energy,
+                           least);
         scatter(model.groups[g], force, internal_n);
     }
     return {hn::GetLane(hn::SumOfLanes(kD, energy)), hn::GetLane(hn::MinOfLanes(kD, least))};
@@ -308,10 +309,10 @@ HWY_EXPORT(tangent_product);
 
 PointSums stresses(const QuadraticModel& model, std::span<const double> moved_m,
                    std::span<double> internal_n, std::span<QuadraticTangent> tangent,
-                   std::span<QuadraticTurn> turn) noexcept {
+                   std::span<QuadraticStretch> stretch) noexcept {
     std::fill(internal_n.begin(), internal_n.end(), 0.0);
     return HWY_DYNAMIC_DISPATCH(point_stresses)(model, moved_m.data(), internal_n.data(),
-                                                tangent.data(), turn.data());
+                                                tangent.data(), stretch.data());
 }
 
 void add_tangent_product(const QuadraticModel& model, std::span<const QuadraticTangent> tangent,

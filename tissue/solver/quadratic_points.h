@@ -16,7 +16,7 @@ struct PointSums {
 /// tangents have a meaning only if min_det_f > 0.
 PointSums stresses(const QuadraticModel& model, std::span<const double> moved_m,
                    std::span<double> internal_n, std::span<QuadraticTangent> tangent,
-                   std::span<QuadraticTurn> turn) noexcept;
+                   std::span<QuadraticStretch> stretch) noexcept;
 
 /// q += factor K p
 void add_tangent_product(const QuadraticModel& model, std::span<const QuadraticTangent> tangent,
