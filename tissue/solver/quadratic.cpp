@@ -129,21 +129,6 @@ void keep_stress(QuadraticSystem& s) noexcept {
     }
 }
 
-// What remains is positive: shear |dF|^2 + 2 mixed (F:dF)(C:dF) + square (C:dF)^2, where
-// mixed^2 = 4/9 shear^2/J^2 <= shear square/|F|^2, since square >= 5/9 shear |F|^2/J^2.
-void drop_geometric_stiffness(QuadraticSystem& s) noexcept {
-    for (QuadraticTangent& tangent : s.tangent) {
-        for (auto& point : tangent.point)
-            point[QuadraticTangent::kBend].fill(0.0f);
-    }
-}
-
-LinearReport solve_residual(const QuadraticModel& model, const QuadraticOptions& options,
-                            QuadraticSystem& s) noexcept {
-    std::copy(s.residual_n.begin(), s.residual_n.end(), s.r.begin());
-    return solve_nodes(model, options, s);
-}
-
 // Armijo's rule from moved_m along x; false if no part of the way goes down.
 bool go_down(const QuadraticModel& model, QuadraticSystem& s) noexcept {
     constexpr double kDescent = 1e-4, kSummed = 1e-12; // of the promise; rounding of a sum
@@ -176,14 +161,14 @@ void linearize(const QuadraticModel& model, const QuadraticState& state,
     constexpr double kShaped = 0.5;
     place(model, state, 0.0, s.start_m);
     add_momentum(model, state, s);
-    s.moved_m = s.start_m;
-    evaluate(model, s);
-    s.recovering = !(s.min_det_f > 0.0) || (state.recovering && s.min_det_f < kShaped);
+    const PointSums start = stresses(model, s.start_m, s.internal_n, s.tangent_at_start, s.stretch);
+    s.min_det_f = start.min_det_f;
+    s.energy_j = start.energy_j;
+    s.recovering = !(start.min_det_f > 0.0) || (state.recovering && start.min_det_f < kShaped);
     if (s.recovering) {
         linearize_recovering(model, s);
         return;
     }
-    std::swap(s.tangent, s.tangent_at_start);
     place(model, state, s.dt_s, s.moved_m);
     evaluate(model, s);
     if (!(s.min_det_f > 0.0)) {
@@ -215,14 +200,10 @@ QuadraticReport free_motion(const QuadraticModel& model, const QuadraticOptions&
     }
     while (report.newton_iterations < options.max_newton &&
            (report.newton_iterations == 0 || s.residual > options.newton_tolerance)) {
-        LinearReport linear = solve_residual(model, options, s);
+        std::copy(s.residual_n.begin(), s.residual_n.end(), s.b.begin());
+        const LinearReport linear = solve_nodes(model, options, s);
         report.linear_iterations += linear.iterations;
-        if (linear.indefinite) {
-            drop_geometric_stiffness(s);
-            linear = solve_residual(model, options, s);
-            report.linear_iterations += linear.iterations;
-            ++report.projected;
-        }
+        report.projected += linear.projected;
         ++report.newton_iterations;
         report.linear_residual = std::max(report.linear_residual, linear.relative_residual);
         if (!go_down(model, s))

@@ -2,6 +2,34 @@
 // Ten-node tetrahedra, neo-Hooke, implicit Euler in real time: the tier that does not lock.
 // Discretisation and energy are those of tissue/reference, mass consistent; tissue loop.
 //   M (v' - v)/dt + C v' + f_int(x') = f, x' = x + dt v', C = alpha M + beta K(x)
+// Newton, each iteration by conjugate gradients on the exact tangent, never assembled. What makes
+// one iteration of either enough, or nearly (falling beam of 240 tets, 525 nodes, nu 0.45 / 0.49,
+// 200 steps of 10 ms; iterations of PCG per step, mean and most, each solve to 1e-3, Newton to
+// 1e-3):
+//   as below                                                       5.0,  8 /  7.6,  12
+//   warped by rotations, as corotated stiffness is                 6.1, 10 / 11.0,  20
+//   not warped                                                    82.4,161 / 237, 600: not done
+//   from x + dt v instead of where the last two steps lead         7.3, 17 / 14.2,  31
+//   that, and geometric stiffness from the prediction              8.1, 17 / 16.5,  38
+//   all three, warped by rotations                                 9.9, 22 / 23.9,  62
+// - The preconditioner is the factor at rest, warped: W A0^-1 W^T, W = F/J^(1/3) of each node, the
+//   mean around it. Rotations keep the shear energy, but a stretched tet changes volume along other
+//   ways than one at rest, and K is 10 to 50 mu. With u = W w, J F^-T : grad u is the divergence of
+//   w (the contravariant Piola transform): the stiff part stays what was factored.
+// - It is solved in single precision (single_factor.h): 16 us where CHOLMOD's double takes 250.
+// - A prediction changes volumes by a little, which K makes a pressure. With its
+// geometric
+//   stiffness the tangent is indefinite at nu 0.49; that of the start is not (quadratic.cpp).
+// - Stresses in double, products in single precision, sixteen tets side by side.
+// If the tangent is indefinite all the same, its geometric stiffness is dropped for that iteration:
+// what is left is provably positive. A body that is inside out recovers, see quadratic_recovery.h.
+// Bits depend on the instruction set, as they do on the BLAS.
+//
+//   QuadraticModel   what never changes: mesh, masses, sixteen tets side by side
+//   QuadraticState   x, v, gain and if it recovers: all that a snapshot needs
+//   QuadraticSystem  residual, tangent and preconditioner for one dt, made at a state; scratch
+// The pieces of a step are separate so that sim/ can put the contact solve between them:
+// linearize, solve for any right-hand sides, advance.
 #pragma once
 
 #include "tissue/material/hyperelastic.h"
@@ -65,7 +93,7 @@ struct QuadraticModel {
 struct QuadraticState {
     std::vector<glm::dvec3> position_m;
     std::vector<glm::dvec3> velocity_mps;
-    std::vector<glm::dvec3> gain_mps; // of velocity in the last step: where the next one looks
+    std::vector<glm::dvec3> gain_mps; // of velocity in the last step: the next one looks there
     bool recovering = false;          // was turned inside out and is not yet well shaped again
 };
 
@@ -91,7 +119,7 @@ struct QuadraticSystem {
     NodeVector<double> start_m{}, moved_m{}, trial_m{}; // displacements from rest
     NodeVector<double> momentum_n{};                    // M v/dt + weight
     NodeVector<double> internal_n{}, inertia_n{}, residual_n{}, way{};
-    NodeVector<float> x{}, r{}, z{}, p{}, q{};
+    NodeVector<float> b{}, x{}, r{}, z{}, p{}, q{};
     std::vector<std::int32_t> place_in_order{}; // in a node vector, in elimination order
     std::vector<float> ordered{};
     std::vector<double> unknown{}; // two vectors of unknowns
@@ -103,7 +131,7 @@ struct QuadraticSystem {
 struct LinearReport {
     int iterations = 0;             // 0 if solved by the factor alone
     double relative_residual = 0.0; // |A x - b| / |b|
-    bool indefinite = false;        // stopped at a direction of negative curvature
+    bool projected = false;         // A was indefinite: from now on without its geometric stiffness
 };
 
 struct QuadraticReport {
@@ -126,7 +154,7 @@ QuadraticState rest_state(const QuadraticModel& model);
 /// For steps of dt_s, finite and > 0. Throws std::invalid_argument naming the value.
 QuadraticSystem make_system(const QuadraticModel& model, double dt_s);
 
-/// Residual and tangent where the last motion leads in dt; at `state` itself if that turns a tet
+/// Residual and tangent where v + gain leads in dt; at `state` itself if that turns a tet
 /// inside out. If one is inside out at `state`, the body recovers: A and residual are those of the
 /// linear law about the rest shape. No allocation, here and below.
 void linearize(const QuadraticModel& model, const QuadraticState& state,

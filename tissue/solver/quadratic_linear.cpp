@@ -58,12 +58,26 @@ void multiply(const QuadraticModel& model, QuadraticSystem& s) noexcept {
     clear_fixed(model, s.q);
 }
 
-} // namespace
+// What remains is positive: shear |dF|^2 + 2 mixed (F:dF)(C:dF) + square (C:dF)^2, where
+// mixed^2 = 4/9 shear^2/J^2 <= shear square/|F|^2, since square >= 5/9 shear |F|^2/J^2.
+void drop_geometric_stiffness(QuadraticSystem& s) noexcept {
+    for (QuadraticTangent& tangent : s.tangent) {
+        for (auto& point : tangent.point)
+            point[QuadraticTangent::kBend].fill(0.0f);
+    }
+}
 
-LinearReport solve_nodes(const QuadraticModel& model, const QuadraticOptions& options,
-                         QuadraticSystem& s) noexcept {
-    LinearReport report;
+struct Gradients {
+    int iterations = 0;
+    double relative_residual = 0.0;
+    bool indefinite = false; // stopped at a way of negative curvature
+};
+
+Gradients conjugate_gradients(const QuadraticModel& model, const QuadraticOptions& options,
+                              QuadraticSystem& s) noexcept {
+    Gradients report;
     std::fill(s.x.begin(), s.x.end(), 0.0f);
+    s.r = s.b;
     const double size2 = product_of(s.r, s.r);
     if (size2 == 0.0)
         return report;
@@ -71,16 +85,12 @@ LinearReport solve_nodes(const QuadraticModel& model, const QuadraticOptions& op
     precondition(model, s);
     s.p = s.z;
     double rz = product_of(s.r, s.z), left2 = size2;
-    while (left2 > enough2 && report.iterations < options.max_linear) {
+    while (report.iterations < options.max_linear) {
         multiply(model, s);
         const double curvature = product_of(s.p, s.q);
-        if (!(curvature > 0.0)) {
-            report.indefinite = true;
-            // what there is goes down (Steihaug 1983); at first, as far as at rest
-            if (report.iterations == 0)
-                s.x = s.p;
+        report.indefinite = !(curvature > 0.0);
+        if (report.indefinite)
             break;
-        }
         const auto alpha = static_cast<float>(rz / curvature);
         for (std::size_t i = 0; i < s.x.size(); ++i) {
             s.x[i] += alpha * s.p[i];
@@ -101,6 +111,21 @@ LinearReport solve_nodes(const QuadraticModel& model, const QuadraticOptions& op
     return report;
 }
 
+} // namespace
+
+LinearReport solve_nodes(const QuadraticModel& model, const QuadraticOptions& options,
+                         QuadraticSystem& s) noexcept {
+    Gradients done = conjugate_gradients(model, options, s);
+    const bool projected = done.indefinite;
+    int iterations = done.iterations;
+    if (projected) {
+        drop_geometric_stiffness(s);
+        done = conjugate_gradients(model, options, s);
+        iterations += done.iterations;
+    }
+    return {iterations, done.relative_residual, projected};
+}
+
 LinearReport solve(const QuadraticModel& model, const QuadraticOptions& options,
                    std::span<const double> b, QuadraticSystem& system,
                    std::span<double> x) noexcept {
@@ -109,9 +134,9 @@ LinearReport solve(const QuadraticModel& model, const QuadraticOptions& options,
         solve_recovering(system, x);
         return {};
     }
-    std::fill(system.r.begin(), system.r.end(), 0.0f);
+    std::fill(system.b.begin(), system.b.end(), 0.0f);
     for (std::size_t k = 0; k < b.size(); ++k)
-        system.r[model.place_of_unknown[k]] = static_cast<float>(b[k]);
+        system.b[model.place_of_unknown[k]] = static_cast<float>(b[k]);
     const LinearReport report = solve_nodes(model, options, system);
     for (std::size_t k = 0; k < x.size(); ++k)
         x[k] = system.x[model.place_of_unknown[k]];

@@ -20,7 +20,7 @@ template <typename T> void clear_fixed(const QuadraticModel& model, NodeVector<T
     }
 }
 
-/// A x = r on the nodes, QuadraticSystem::x from r, which becomes what is left.
+/// A x = b on the nodes, QuadraticSystem::x from QuadraticSystem::b.
 LinearReport solve_nodes(const QuadraticModel& model, const QuadraticOptions& options,
                          QuadraticSystem& system) noexcept;
 

@@ -179,7 +179,7 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s) {
     for (auto* v : {&s.start_m, &s.moved_m, &s.trial_m, &s.momentum_n, &s.internal_n, &s.inertia_n,
                     &s.residual_n, &s.way})
         v->assign(places, 0.0);
-    for (auto* v : {&s.x, &s.r, &s.z, &s.p, &s.q})
+    for (auto* v : {&s.b, &s.x, &s.r, &s.z, &s.p, &s.q})
         v->assign(places, 0.0f);
     s.ordered.resize(static_cast<std::size_t>(model.unknowns));
     s.unknown.resize(2 * static_cast<std::size_t>(model.unknowns));
