@@ -157,14 +157,12 @@ bool go_down(const QuadraticModel& model, QuadraticSystem& s) noexcept {
 
 void linearize(const QuadraticModel& model, const QuadraticState& state,
                QuadraticSystem& s) noexcept {
-    // of what the rest shape would have: less, and neo-Hooke would start with a blow
-    constexpr double kShaped = 0.5;
     place(model, state, 0.0, s.start_m);
     add_momentum(model, state, s);
     const PointSums start = stresses(model, s.start_m, s.internal_n, s.tangent_at_start, s.stretch);
     s.min_det_f = start.min_det_f;
     s.energy_j = start.energy_j;
-    s.recovering = !(start.min_det_f > 0.0) || (state.recovering && start.min_det_f < kShaped);
+    s.recovering = !(start.min_det_f > 0.0);
     if (s.recovering) {
         linearize_recovering(model, s);
         return;
@@ -231,7 +229,6 @@ void advance(const QuadraticModel& model, const QuadraticSystem& system, std::sp
         state.gain_mps[i] = step / system.dt_s - state.velocity_mps[i];
         state.velocity_mps[i] = step / system.dt_s;
     }
-    state.recovering = system.recovering;
 }
 
 } // namespace tissue

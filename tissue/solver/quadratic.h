@@ -26,7 +26,7 @@
 // Bits depend on the instruction set, as they do on the BLAS.
 //
 //   QuadraticModel   what never changes: mesh, masses, sixteen tets side by side
-//   QuadraticState   x, v, gain and if it recovers: all that a snapshot needs
+//   QuadraticState   x, v and how v changed last: all that a snapshot needs
 //   QuadraticSystem  residual, tangent and preconditioner for one dt, made at a state; scratch
 // The pieces of a step are separate so that sim/ can put the contact solve between them:
 // linearize, solve for any right-hand sides, advance.
@@ -94,7 +94,6 @@ struct QuadraticState {
     std::vector<glm::dvec3> position_m;
     std::vector<glm::dvec3> velocity_mps;
     std::vector<glm::dvec3> gain_mps; // of velocity in the last step: the next one looks there
-    bool recovering = false;          // was turned inside out and is not yet well shaped again
 };
 
 struct QuadraticOptions {

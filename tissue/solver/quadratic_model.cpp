@@ -104,8 +104,7 @@ void add_mass(const ReferenceModel& reference, QuadraticModel& m) {
         }
     }
     m.mass_start.push_back(0);
-    for (auto& row : rows) {
-        std::sort(row.begin(), row.end(), [](auto& a, auto& b) { return a.column < b.column; });
+    for (const auto& row : rows) {
         for (const Entry& e : row) {
             m.mass_column.push_back(e.column);
             m.mass_kg.push_back(e.kg);
