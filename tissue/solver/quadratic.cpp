@@ -60,6 +60,7 @@ void evaluate(const QuadraticModel& model, QuadraticSystem& s) noexcept {
     const PointSums sums = stresses(model, s.moved_m, s.internal_n, s.tangent, s.stretch);
     s.min_det_f = sums.min_det_f;
     s.energy_j = sums.min_det_f > 0.0 ? sums.energy_j : kInfinity;
+    s.shape_j = sums.shape_j;
     add_inertia(model, s);
     for (std::size_t i = 0; i < s.residual_n.size(); ++i)
         s.residual_n[i] = s.momentum_n[i] - s.internal_n[i] - s.inertia_n[i];
@@ -93,15 +94,17 @@ void warp_nodes(const QuadraticModel& model, QuadraticSystem& s) noexcept {
     }
 }
 
-void place(const QuadraticModel& model, const QuadraticState& state, double ahead_s,
-           NodeVector<double>& moved_m) noexcept {
+// Displacements where the velocity and `share` of its last gain lead in dt.
+void look_ahead(const QuadraticModel& model, const QuadraticState& state, double share,
+                QuadraticSystem& s) noexcept {
     for (std::size_t i = 0; i < model.dof.size(); ++i) {
-        dvec3 u = state.position_m[i] - model.mesh.rest_m[i];
-        if (model.dof[i] >= 0)
-            u += ahead_s * (state.velocity_mps[i] + state.gain_mps[i]);
+        if (model.dof[i] < 0)
+            continue;
+        const dvec3 step = s.dt_s * (state.velocity_mps[i] + share * state.gain_mps[i]);
         for (int c = 0; c < 3; ++c)
-            moved_m[4 * i + c] = u[c];
+            s.moved_m[4 * i + c] = s.start_m[4 * i + c] + step[c];
     }
+    evaluate(model, s);
 }
 
 // f + M v/dt
@@ -157,7 +160,11 @@ bool go_down(const QuadraticModel& model, QuadraticSystem& s) noexcept {
 
 void linearize(const QuadraticModel& model, const QuadraticState& state,
                QuadraticSystem& s) noexcept {
-    place(model, state, 0.0, s.start_m);
+    for (std::size_t i = 0; i < model.dof.size(); ++i) {
+        for (int c = 0; c < 3; ++c)
+            s.start_m[4 * i + c] = state.position_m[i][c] - model.mesh.rest_m[i][c];
+    }
+    s.moved_m = s.start_m;
     add_momentum(model, state, s);
     const PointSums start = stresses(model, s.start_m, s.internal_n, s.tangent_at_start, s.stretch);
     s.min_det_f = start.min_det_f;
@@ -167,9 +174,17 @@ void linearize(const QuadraticModel& model, const QuadraticState& state,
         linearize_recovering(model, s);
         return;
     }
-    place(model, state, s.dt_s, s.moved_m);
-    evaluate(model, s);
-    if (!(s.min_det_f > 0.0)) {
+    // From a place that is no better than where it stands, Newton has a long way. Changes of volume
+    // are not counted, it undoes them at once, unless a point is pressed flat.
+    constexpr double kFlat = 0.5;
+    const auto better = [&] {
+        return s.min_det_f >= kFlat * start.min_det_f &&
+               s.potential_j - s.energy_j + s.shape_j <= start.shape_j;
+    };
+    look_ahead(model, state, 1.0, s);
+    if (!better())
+        look_ahead(model, state, 0.0, s);
+    if (!better()) {
         s.moved_m = s.start_m;
         evaluate(model, s);
     }

@@ -109,6 +109,7 @@ struct QuadraticSystem {
     bool recovering = false;  // A is that of the rest shape, turned as a whole
     glm::dmat3 turned{1.0};   // so far; 1 if not recovering
     double energy_j = 0.0;    // elastic
+    double shape_j = 0.0;     // of this, what is not of the change of volume
     double potential_j = 0.0; // incremental: its minimum is the step
     double min_det_f = 1.0;   // over the points
     double residual = 0.0;    // relative, see QuadraticReport

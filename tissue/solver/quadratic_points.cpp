@@ -162,18 +162,22 @@ struct Law {
     D mu, bulk;
 };
 
+struct Sums {
+    D shape_2j, volume_2j, least;
+};
+
 void keep(D v, float* to) noexcept {
     const hn::Rebind<float, Tag<double>> half;
     hn::Store(hn::DemoteTo(half, v), half, to);
 }
 
 // P, times the volume, in place of F; the formulas are those of tissue/material/hyperelastic.cpp.
-void stress_at(const Law& law, D volume, int i, D* F, QuadraticTangent& tangent, int q, D& energy,
-               D& least) noexcept {
+void stress_at(const Law& law, D volume, int i, D* F, QuadraticTangent& tangent, int q,
+               Sums& sums) noexcept {
     D C[9];
     cofactors(F, C);
     const D J = hn::MulAdd(F[0], C[0], hn::MulAdd(F[1], C[1], hn::Mul(F[2], C[2])));
-    least = hn::Min(least, J);
+    sums.least = hn::Min(sums.least, J);
     const D some = hn::Max(J, hn::Set(kD, 1e-9)); // below that the answer is not used
     const D I1 = dot9(F, F);
     const D one = hn::Set(kD, 1.0), third = hn::Set(kD, 1.0 / 3.0);
@@ -194,7 +198,8 @@ void stress_at(const Law& law, D volume, int i, D* F, QuadraticTangent& tangent,
          &to[QuadraticTangent::kSquare][i]);
     keep(bend, &to[QuadraticTangent::kBend][i]);
     const D shape = hn::NegMulAdd(hn::Set(kD, 3.0), hn::Mul(law.mu, volume), hn::Mul(shear, I1));
-    energy = hn::MulAdd(hn::Set(kD, 0.5), hn::MulAdd(hn::Mul(bulk, away), away, shape), energy);
+    sums.shape_2j = hn::Add(sums.shape_2j, shape);
+    sums.volume_2j = hn::MulAdd(hn::Mul(bulk, away), away, sums.volume_2j);
     for (int k = 0; k < 9; ++k)
         F[k] = hn::MulAdd(shear, F[k], hn::Mul(bend, C[k]));
 }
@@ -232,7 +237,7 @@ void tangent_at(const QuadraticTangent& tangent, int q, int i, V<float>* dF) noe
 
 void group_stresses(const Law& law, const QuadraticGroup& group, const TetVector<double>& u, int i,
                     TetVector<double>& force, QuadraticTangent& tangent, QuadraticStretch& stretch,
-                    D& energy, D& least) noexcept {
+                    Sums& sums) noexcept {
     using S = Shape<double>;
     D base[12], sum[12], mean[9];
     S::base(u, i, base);
@@ -246,7 +251,7 @@ void group_stresses(const Law& law, const QuadraticGroup& group, const TetVector
             F[4 * k] = hn::Add(F[4 * k], hn::Set(kD, 1.0));
         for (int k = 0; k < 9; ++k)
             mean[k] = hn::MulAdd(volume, F[k], mean[k]);
-        stress_at(law, volume, i, F, tangent, q, energy, least);
+        stress_at(law, volume, i, F, tangent, q, sums);
         S::add_force(F, group.gradient_1pm[q], q, i, force, sum);
     }
     S::add_base(sum, i, force);
@@ -259,16 +264,17 @@ void group_stresses(const Law& law, const QuadraticGroup& group, const TetVector
 PointSums point_stresses(const QuadraticModel& model, const double* moved_m, double* internal_n,
                          QuadraticTangent* tangent, QuadraticStretch* stretch) {
     const Law law{hn::Set(kD, model.elasticity.mu_pa), hn::Set(kD, model.elasticity.bulk_pa)};
-    D energy = hn::Zero(kD), least = hn::Set(kD, std::numeric_limits<double>::max());
+    Sums sums{hn::Zero(kD), hn::Zero(kD), hn::Set(kD, std::numeric_limits<double>::max())};
     for (std::size_t g = 0; g < model.groups.size(); ++g) {
         TetVector<double> u, force{};
         gather(model.groups[g], moved_m, u);
         for (int i = 0; i < kLanes; i += static_cast<int>(hn::Lanes(kD)))
-            group_stresses(law, model.groups[g], u, i, force, tangent[g], stretch[g], energy,
-                           least);
+            group_stresses(law, model.groups[g], u, i, force, tangent[g], stretch[g], sums);
         scatter(model.groups[g], force, internal_n);
     }
-    return {hn::GetLane(hn::SumOfLanes(kD, energy)), hn::GetLane(hn::MinOfLanes(kD, least))};
+    const double shape_j = 0.5 * hn::GetLane(hn::SumOfLanes(kD, sums.shape_2j));
+    return {shape_j + 0.5 * hn::GetLane(hn::SumOfLanes(kD, sums.volume_2j)), shape_j,
+            hn::GetLane(hn::MinOfLanes(kD, sums.least))};
 }
 
 void tangent_product(const QuadraticModel& model, const QuadraticTangent* tangent, float factor,

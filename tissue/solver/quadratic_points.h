@@ -9,6 +9,7 @@ namespace tissue {
 
 struct PointSums {
     double energy_j = 0.0;
+    double shape_j = 0.0; // of this, what is not of the change of volume
     double min_det_f = 0.0;
 };
 
