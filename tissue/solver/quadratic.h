@@ -2,27 +2,29 @@
 // Ten-node tetrahedra, neo-Hooke, implicit Euler in real time: the tier that does not lock.
 // Discretisation and energy are those of tissue/reference, mass consistent; tissue loop.
 //   M (v' - v)/dt + C v' + f_int(x') = f, x' = x + dt v', C = alpha M + beta K(x)
-// Newton, each iteration by conjugate gradients on the exact tangent, never assembled. What makes
-// one iteration of either enough, or nearly (falling beam of 240 tets, 525 nodes, nu 0.45 / 0.49,
-// 200 steps of 10 ms; iterations of PCG per step, mean and most, each solve to 1e-3, Newton to
-// 1e-3):
-//   as below                                                       5.0,  8 /  7.6,  12
-//   warped by rotations, as corotated stiffness is                 6.1, 10 / 11.0,  20
-//   not warped                                                    82.4,161 / 237, 600: not done
-//   from x + dt v instead of where the last two steps lead         7.3, 17 / 14.2,  31
-//   that, and geometric stiffness from the prediction              8.1, 17 / 16.5,  38
-//   all three, warped by rotations                                 9.9, 22 / 23.9,  62
+// Newton, each iteration by conjugate gradients (PCG) on the exact tangent, which is never
+// assembled. Iterations of PCG per step, mean and most, for a falling beam of 240 tets, 525 nodes,
+// 200 steps of 10 ms, each solve to 1e-3, Newton to 1e-3 (tissue_quadratic_bench):
+//                                                              nu 0.45       nu 0.49
+//   as below                                                   5.0,  10      7.6,  15
+//   warped by rotations, as corotated stiffness is             6.2,  13     11.0,  23
+//   not warped                                                83.3, 194    more than 237, 600
+//   from x + dt v, not from where the last two steps lead      7.1,  17     14.1,  33
+//   that, and geometric stiffness from the prediction          7.9,  17     16.4,  38
+//   both, and warped by rotations                              9.7,  22     23.7,  62
 // - The preconditioner is the factor at rest, warped: W A0^-1 W^T, W = F/J^(1/3) of each node, the
 //   mean around it. Rotations keep the shear energy, but a stretched tet changes volume along other
 //   ways than one at rest, and K is 10 to 50 mu. With u = W w, J F^-T : grad u is the divergence of
 //   w (the contravariant Piola transform): the stiff part stays what was factored.
-// - It is solved in single precision (single_factor.h): 16 us where CHOLMOD's double takes 250.
-// - A prediction changes volumes by a little, which K makes a pressure. With its
-// geometric
-//   stiffness the tangent is indefinite at nu 0.49; that of the start is not (quadratic.cpp).
-// - Stresses in double, products in single precision, sixteen tets side by side.
-// If the tangent is indefinite all the same, its geometric stiffness is dropped for that iteration:
-// what is left is provably positive. A body that is inside out recovers, see quadratic_recovery.h.
+// - It is solved in single precision (single_factor.h), a tenth of the time of CHOLMOD's solve.
+// - A prediction changes volumes by a little, which K makes a pressure. With its geometric
+// stiffness
+//   the tangent may be indefinite at nu 0.49; with that of the start it is not (keep_stress()).
+// - Stresses in double, products in single precision, sixteen tets side by side; rows of the mass
+//   in lanes too (before, as scalars, a quarter of the step).
+// If the tangent is indefinite all the same, as in a beam that folds up, its geometric stiffness is
+// dropped for that iteration: what is left is provably positive, but then Newton takes more of
+// them. A body that is inside out recovers, see quadratic_recovery.h.
 // Bits depend on the instruction set, as they do on the BLAS.
 //
 //   QuadraticModel   what never changes: mesh, masses, sixteen tets side by side
@@ -154,9 +156,9 @@ QuadraticState rest_state(const QuadraticModel& model);
 /// For steps of dt_s, finite and > 0. Throws std::invalid_argument naming the value.
 QuadraticSystem make_system(const QuadraticModel& model, double dt_s);
 
-/// Residual and tangent where v + gain leads in dt; at `state` itself if that turns a tet
-/// inside out. If one is inside out at `state`, the body recovers: A and residual are those of the
-/// linear law about the rest shape. No allocation, here and below.
+/// Residual and tangent where v + gain leads in dt, or v, or at `state` itself: the first that is
+/// better than to stand still. If a tet is inside out at `state`, the body recovers: A and residual
+/// are those of the linear law about the rest shape. No allocation, here and below.
 void linearize(const QuadraticModel& model, const QuadraticState& state,
                QuadraticSystem& system) noexcept;
 

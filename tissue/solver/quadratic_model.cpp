@@ -5,7 +5,6 @@
 #include "tissue/reference/tet10.h"
 #include "tissue/solver/quadratic.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
