@@ -1,6 +1,6 @@
 // tissue/mesh/quadratic_mesh.h
 // Ten-node tetrahedra in their rest shape: a TetMesh with a node on every edge. Called at setup by
-// the reference solver, studies and tests; any thread.
+// the quadratic and the reference solver, studies and tests; any thread.
 #pragma once
 
 #include "tissue/mesh/tet_mesh.h"

@@ -25,7 +25,8 @@
 // If the tangent is indefinite all the same, as in a beam that folds up, its geometric stiffness is
 // dropped for that iteration: what is left is provably positive, but then Newton takes more of
 // them. A body that is inside out recovers, see quadratic_recovery.h.
-// Bits depend on the instruction set, as they do on the BLAS.
+// Bits depend on the instruction set, as they do on the BLAS: AVX-512, AVX2, SSE4 or SSSE3, chosen
+// at run time. SSE costs half as much again; the tests were run with each of them.
 //
 //   QuadraticModel   what never changes: mesh, masses, sixteen tets side by side
 //   QuadraticState   x, v and how v changed last: all that a snapshot needs
@@ -109,7 +110,7 @@ struct QuadraticOptions {
 struct QuadraticSystem {
     double dt_s = 0.0;
     bool recovering = false;  // A is that of the rest shape, turned as a whole
-    glm::dmat3 turned{1.0};   // so far; 1 if not recovering
+    glm::dmat3 turned{1.0};   // if it recovers: so far
     double energy_j = 0.0;    // elastic
     double shape_j = 0.0;     // of this, what is not of the change of volume
     double potential_j = 0.0; // incremental: its minimum is the step
