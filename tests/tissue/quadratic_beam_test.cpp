@@ -28,13 +28,19 @@ struct Beam {
 } // namespace
 
 TEST_CASE("the tip of a falling beam stays within 3 % of the reference's at every step") {
-    for (const double poisson : {0.45, 0.49}) {
-        Beam beam(bodies::elastic(100e3, poisson), 0.01);
+    struct Case {
+        double young_pa, poisson;
+        bool folds; // to det F = 0.2; its tangent is indefinite on the way
+    };
+    for (const Case& c : {Case{100e3, 0.45, false}, {100e3, 0.49, false}, {30e3, 0.3, true}}) {
+        const auto material = bodies::elastic(c.young_pa, c.poisson);
+        Beam beam(material, 0.01);
         const auto reference =
-            make_reference(beam.mesh, bodies::elastic(100e3, poisson), tissue::Law::neo_hooke,
+            make_reference(beam.mesh, material, tissue::Law::neo_hooke,
                            quadratic_bodies::held_at_x0(beam.mesh), {0, -9.81, 0});
         auto exact = make_system(reference);
         auto expected = rest_state(reference);
+        int projected = 0;
         for (int i = 0; i < 60; ++i) { // down, up and down again
             const auto report = quadratic_bodies::step(beam.model, {}, beam.system, beam.state);
             step(reference, {}, 0.01, tissue::TimeRule::implicit_euler, {.tolerance = 1e-6}, exact,
@@ -42,8 +48,10 @@ TEST_CASE("the tip of a falling beam stays within 3 % of the reference's at ever
             const dvec3 there = expected.position_m[beam.tip] - beam.mesh.rest_m[beam.tip];
             CHECK(glm::length(beam.tip_m() - there) < 0.03 * glm::length(there));
             CHECK(report.linear_residual <= 1e-3);
-            CHECK(report.relative_residual <= 1e-3);
+            CHECK((c.folds || report.relative_residual <= 1e-3));
+            projected += report.projected;
         }
+        CHECK((projected > 0) == c.folds);
     }
 }
 

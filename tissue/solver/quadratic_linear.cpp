@@ -58,12 +58,14 @@ void multiply(const QuadraticModel& model, QuadraticSystem& s) noexcept {
     clear_fixed(model, s.q);
 }
 
-// What remains is positive: shear |dF|^2 + 2 mixed (F:dF)(C:dF) + square (C:dF)^2, where
+// Nothing of it left, A is positive: shear |dF|^2 + 2 mixed (F:dF)(C:dF) + square (C:dF)^2, where
 // mixed^2 = 4/9 shear^2/J^2 <= shear square/|F|^2, since square >= 5/9 shear |F|^2/J^2.
-void drop_geometric_stiffness(QuadraticSystem& s) noexcept {
+void scale_geometric_stiffness(float share, QuadraticSystem& s) noexcept {
     for (QuadraticTangent& tangent : s.tangent) {
-        for (auto& point : tangent.point)
-            point[QuadraticTangent::kBend].fill(0.0f);
+        for (auto& point : tangent.point) {
+            for (float& bend : point[QuadraticTangent::kBend])
+                bend *= share;
+        }
     }
 }
 
@@ -118,8 +120,10 @@ LinearReport solve_nodes(const QuadraticModel& model, const QuadraticOptions& op
     Gradients done = conjugate_gradients(model, options, s);
     const bool projected = done.indefinite;
     int iterations = done.iterations;
-    if (projected) {
-        drop_geometric_stiffness(s);
+    for (const float share : {0.5f, 0.0f}) { // half of it is often enough, and nearer to the truth
+        if (!done.indefinite)
+            break;
+        scale_geometric_stiffness(share, s);
         done = conjugate_gradients(model, options, s);
         iterations += done.iterations;
     }
