@@ -68,12 +68,18 @@ bool basis_still_good(const Body& body, std::span<const tissue::BasisContact> co
 void compute_basis(Body& body, std::span<const tissue::BasisContact> contacts) noexcept {
     SoftBody& soft = *body.soft;
     if (basis_still_good(body, contacts)) {
-        tissue::refresh_contact_basis(soft.model, soft.state, soft.system, soft.basis);
+        std::visit(
+            [&](auto& s) { tissue::refresh_contact_basis(s.model, s.state, s.system, soft.basis); },
+            soft.solid);
         return;
     }
-    tissue::compute_contact_basis(soft.model, body.organ->surface, soft.state, soft.system,
-                                  contacts, soft.basis);
-    tissue::turn_shapes(soft.basis, soft.model.unknowns, soft.shape_by_unknown);
+    std::visit(
+        [&](auto& s) {
+            tissue::compute_contact_basis(s.model, body.organ->surface, s.state, s.system, contacts,
+                                          soft.basis);
+        },
+        soft.solid);
+    tissue::turn_shapes(soft.basis, tissue::unknowns(soft.solid), soft.shape_by_unknown);
     soft.basis_of = soft.linearisations;
     soft.basis_contacts = contacts.size();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -122,7 +128,8 @@ void fill_patch(const Body& body, const tissue::Patch& patch, int tool,
     const SoftBody& soft = *body.soft;
     for (int v = 0; v < out.vertices; ++v) {
         tissue::vertex_shapes(
-            soft.model, skin, patch.vertex[v], soft.shape_by_unknown, soft.basis.modes,
+            tissue::dofs(soft.solid), skin, patch.vertex[v], soft.shape_by_unknown,
+            soft.basis.modes,
             {out.shape[v][0].data(), out.shape[v][1].data(), out.shape[v][2].data()});
     }
 }

@@ -77,7 +77,7 @@ glm::dvec3 mixed(const std::vector<glm::dvec3>& values, const tissue::Triangle& 
 } // namespace
 
 Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Material& material,
-               const TipRadii& tip_radius_m, double dt_s) {
+               const TipRadii& tip_radius_m, double dt_s, tissue::Tier tier) {
     Body body;
     body.organ = std::move(organ);
     body.material = material;
@@ -92,27 +92,24 @@ Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Ma
     body.thinness_1pm.assign(vertices, 0.0);
     body.normal_mpn.assign(vertices, 0.0);
     body.tangential_mpn.assign(vertices, 0.0);
-    if (body.organ->rigid) {
+    if (body.organ->rigid || tier == tissue::Tier::rigid) {
         tissue::place_surface(skin, {}, {}, body.skin_m, body.skin_normal);
         return body;
     }
     fill_tips(body, tip_radius_m);
     fill_law(body);
-    tissue::CorotatedModel model = tissue::make_corotated(
-        body.organ->mesh, material, body.organ->anchored, glm::dvec3{0.0}, body.organ->bed);
-    tissue::CorotatedState state = tissue::rest_state(model);
-    tissue::CorotatedSystem system = tissue::make_system(model);
-    tissue::linearize(model, state, dt_s, system);
-    tissue::ContactBasis basis = tissue::make_contact_basis(model);
-    tissue::Descent descent = tissue::make_descent(model);
-    const std::size_t n = static_cast<std::size_t>(model.unknowns);
-    body.soft.emplace(SoftBody{
-        std::move(model), std::move(state), std::move(system), std::move(basis),
-        tissue::make_skin_frames(skin, body.organ->mesh.rest_m),
-        std::vector<double>(n * tissue::kMaxBasis), std::vector<double>(n),
-        std::vector<double>(n * 3 * haptics::kTools), std::vector<double>(n), std::move(descent)});
-    tissue::place_surface(skin, body.soft->skin_frame, body.soft->state.position_m, body.skin_m,
-                          body.skin_normal);
+    tissue::Solid solid =
+        tissue::make_solid(tier, {body.organ->mesh, body.organ->anchored, body.organ->bed},
+                           material, glm::dvec3{0.0}, dt_s);
+    const int unknowns = tissue::unknowns(solid);
+    const auto n = static_cast<std::size_t>(unknowns);
+    std::vector<tissue::SkinFrame> frame = tissue::make_skin_frames(skin, tissue::rest_m(solid));
+    body.soft.emplace(SoftBody{std::move(solid), tissue::make_contact_basis(unknowns),
+                               std::move(frame), std::vector<double>(n * tissue::kMaxBasis),
+                               std::vector<double>(n), std::vector<double>(n * 3 * haptics::kTools),
+                               std::vector<double>(n)});
+    tissue::place_surface(skin, body.soft->skin_frame, tissue::position_m(body.soft->solid),
+                          body.skin_m, body.skin_normal);
     return body;
 }
 

@@ -8,7 +8,7 @@
 #include "tissue/mesh/baked_organ.h"
 #include "tissue/response/contact_basis.h"
 #include "tissue/response/patch.h"
-#include "tissue/solver/descent.h"
+#include "tissue/solver/solid.h"
 
 #include <limits>
 #include <memory>
@@ -18,17 +18,13 @@ namespace sim {
 
 /// What deforms. Absent for a rigid body.
 struct SoftBody {
-    tissue::CorotatedModel model;
-    tissue::CorotatedState state;
-    tissue::CorotatedSystem system; // linearised at `state`
+    tissue::Solid solid;
     tissue::ContactBasis basis;
     std::vector<tissue::SkinFrame> skin_frame;
     std::vector<double> shape_by_unknown; // the basis, one line of modes per unknown
     std::vector<double> motion_m;         // du of the step being made
     std::vector<double> answer_m;         // A^-1 of the contact rows, 3 columns a tool
     std::vector<double> load_n;           // contact forces of the step being made
-    tissue::Descent descent;              // for steps that one Newton iteration does not do
-    double drift_m = 0.0;                 // how far anything moved since the system was linearised
     int linearisations = 0; // counts them, so that what rests on one knows when it is old
     int basis_of = -1;      // the linearisation and places that the basis was made for
     std::array<glm::dvec3, haptics::kTools> basis_rest_m{};
@@ -56,9 +52,11 @@ struct Body {
     std::array<TipLaw, haptics::kTools> tip;
 };
 
-/// `dt_s`: the FEM step that the first system is factored for. Throws on bad data, with the reason.
+/// `dt_s`: the FEM step that the first system is factored for. The rigid tier makes scenery of any
+/// organ, and scenery is rigid in any tier. Throws on bad data, with the reason.
 Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Material& material,
-               const TipRadii& tip_radius_m, double dt_s);
+               const TipRadii& tip_radius_m, double dt_s,
+               tissue::Tier tier = tissue::Tier::corotated);
 
 /// The sub-grid law of a tool where `at` lies on the skin; `floor_mpn` is 1/Kc of the tool there.
 haptics::LocalLaw law_on(const Body& body, const haptics::SurfacePoint& at, int tool,

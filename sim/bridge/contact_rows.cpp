@@ -123,7 +123,7 @@ void condense_rows(TissueRig& rig, haptics::ContactProblem& problem) noexcept {
         if (!body.soft)
             continue;
         SoftBody& soft = *body.soft;
-        const std::size_t n = static_cast<std::size_t>(soft.model.unknowns);
+        const std::size_t n = soft.motion_m.size();
         std::array<int, kTools> column{};
         int columns = 0;
         for (int i = 0; i < kTools; ++i) {
@@ -141,11 +141,12 @@ void condense_rows(TissueRig& rig, haptics::ContactProblem& problem) noexcept {
             for (int axis = 0; axis < 3; ++axis) {
                 glm::dvec3 direction{0.0};
                 direction[axis] = 1.0;
-                tissue::add_row(soft.model, body.organ->surface, tissue_point(rig.contact[i].at),
-                                direction, 1.0, block.subspan((column[i] + axis) * n, n));
+                tissue::add_row(tissue::dofs(soft.solid), body.organ->surface,
+                                tissue_point(rig.contact[i].at), direction, 1.0,
+                                block.subspan((column[i] + axis) * n, n));
             }
         }
-        soft.system.factor.solve(block, columns);
+        tissue::solve(soft.solid, block, columns);
         for (int i = 0; i < kTools; ++i) {
             for (int j = 0; j < kTools; ++j) {
                 const bool both = problem.row[i].active && problem.row[j].active &&
@@ -155,8 +156,8 @@ void condense_rows(TissueRig& rig, haptics::ContactProblem& problem) noexcept {
                     continue;
                 for (int axis = 0; axis < 3; ++axis) {
                     problem.compliance[i][j][axis] = tissue::row_value(
-                        soft.model, body.organ->surface, tissue_point(rig.contact[i].at),
-                        block.subspan((column[j] + axis) * n, n));
+                        tissue::dofs(soft.solid), body.organ->surface,
+                        tissue_point(rig.contact[i].at), block.subspan((column[j] + axis) * n, n));
                 }
             }
             if (problem.row[i].active && rig.contact[i].body == static_cast<int>(b)) {
@@ -189,8 +190,9 @@ void fill_rows(const TissueRig& rig, const ToolsNow& tools,
         row.law = law_on(body, contact.at, i, rig.floor_mpn[i]);
         row.surface_free_m = place;
         if (!still) {
-            row.surface_free_m += tissue::row_value(body.soft->model, body.organ->surface,
-                                                    tissue_point(contact.at), body.soft->motion_m);
+            row.surface_free_m +=
+                tissue::row_value(tissue::dofs(body.soft->solid), body.organ->surface,
+                                  tissue_point(contact.at), body.soft->motion_m);
         }
     }
 }
@@ -202,7 +204,7 @@ void apply_forces(TissueRig& rig, const haptics::ContactProblem& problem,
         if (!body.soft)
             continue;
         SoftBody& soft = *body.soft;
-        const std::size_t n = static_cast<std::size_t>(soft.model.unknowns);
+        const std::size_t n = soft.motion_m.size();
         std::size_t column = 0;
         std::fill(soft.load_n.begin(), soft.load_n.end(), 0.0);
         for (int i = 0; i < kTools; ++i) {
@@ -213,8 +215,8 @@ void apply_forces(TissueRig& rig, const haptics::ContactProblem& problem,
             column += 3;
             if (force == glm::dvec3{0.0})
                 continue;
-            tissue::add_row(soft.model, body.organ->surface, tissue_point(rig.contact[i].at), force,
-                            -1.0, soft.load_n);
+            tissue::add_row(tissue::dofs(soft.solid), body.organ->surface,
+                            tissue_point(rig.contact[i].at), force, -1.0, soft.load_n);
             for (std::size_t k = 0; k < n; ++k) {
                 soft.motion_m[k] -= force.x * x[k] + force.y * x[n + k] + force.z * x[2 * n + k];
             }

@@ -6,6 +6,25 @@
 #include <limits>
 
 namespace sim {
+namespace {
+
+std::optional<tissue::SparseFactor> rest_factor(const tissue::CorotatedSolid& solid) {
+    tissue::CorotatedSystem system = tissue::make_system(solid.model);
+    tissue::linearize(solid.model, tissue::rest_state(solid.model),
+                      std::numeric_limits<double>::infinity(), system);
+    if (!system.factored)
+        return std::nullopt;
+    return std::move(system.factor);
+}
+
+std::optional<tissue::SparseFactor> rest_factor(const tissue::QuadraticSolid& solid) {
+    tissue::SparseFactor factor(solid.model.pattern);
+    if (!factor.factor(solid.model.rest_stiffness_npm))
+        return std::nullopt;
+    return factor;
+}
+
+} // namespace
 
 bool is_held(const tissue::BakedOrgan& organ, const tissue::Material& material) {
     if (organ.rigid || std::count(organ.anchored.begin(), organ.anchored.end(), 1) >= 3)
@@ -24,32 +43,29 @@ RestFeel::RestFeel(const Body& body) : body_(body) {
             std::count(body.organ->anchored.begin(), body.organ->anchored.end(), 1) >= 3;
     if (!firm_)
         return;
-    const tissue::CorotatedModel& model = body.soft->model;
-    system_ = tissue::make_system(model);
-    tissue::linearize(model, tissue::rest_state(model), std::numeric_limits<double>::infinity(),
-                      *system_);
-    firm_ = system_->factored;
-    answer_m_.resize(3 * static_cast<std::size_t>(model.unknowns));
+    factor_ = std::visit([](const auto& solid) { return rest_factor(solid); }, body.soft->solid);
+    firm_ = factor_.has_value();
+    answer_m_.resize(3 * body.soft->motion_m.size());
 }
 
 glm::dmat3 RestFeel::mesh_compliance(const haptics::SurfacePoint& at) {
-    if (!system_)
+    if (!factor_)
         return glm::dmat3{0.0};
-    const tissue::CorotatedModel& model = body_.soft->model;
+    const std::span<const std::int32_t> dofs = tissue::dofs(body_.soft->solid);
     const tissue::ContactSurface& skin = body_.organ->surface;
-    const std::size_t n = static_cast<std::size_t>(model.unknowns);
+    const std::size_t n = body_.soft->motion_m.size();
     const std::span<double> block(answer_m_);
     std::fill(block.begin(), block.end(), 0.0);
     for (int axis = 0; axis < 3; ++axis) {
         glm::dvec3 direction{0.0};
         direction[axis] = 1.0;
-        tissue::add_row(model, skin, tissue_point(at), direction, 1.0, block.subspan(axis * n, n));
+        tissue::add_row(dofs, skin, tissue_point(at), direction, 1.0, block.subspan(axis * n, n));
     }
-    system_->factor.solve(block, 3);
+    factor_->solve(block, 3);
     glm::dmat3 compliance;
     for (int axis = 0; axis < 3; ++axis) {
         compliance[axis] =
-            tissue::row_value(model, skin, tissue_point(at), block.subspan(axis * n, n));
+            tissue::row_value(dofs, skin, tissue_point(at), block.subspan(axis * n, n));
     }
     return compliance;
 }

@@ -24,7 +24,7 @@ class RestFeel {
   private:
     const Body& body_;
     bool firm_ = true;
-    std::optional<tissue::CorotatedSystem> system_;
+    std::optional<tissue::SparseFactor> factor_; // of the stiffness at rest
     std::vector<double> answer_m_;
 };
 

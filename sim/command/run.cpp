@@ -19,7 +19,7 @@ namespace {
 
 struct RunArguments {
     RunOptions options;
-    std::string coupling = "anchored", model = "corotated", log, junit;
+    std::string coupling = "anchored", log, junit;
     bool realtime = false, window = false, json = false, no_noise = false, no_forces = false;
     double seconds = 0.0;
 };
@@ -118,8 +118,9 @@ void add_run(CLI::App& app, int& exit_code) {
     c->add_option("--hands", a->options.hands,
                   "expert, intermediate, novice, another named skill, or FILE.toml");
     c->add_option("--coupling", a->coupling, "anchored or hold");
-    c->add_option("--model", a->model, "corotated (auto chooses it until there are more tiers)")
-        ->check(CLI::IsMember({"auto", "corotated"}));
+    c->add_option("--model", a->options.model,
+                  "rigid, linear-compliance, corotated, quadratic; of one organ otherwise: "
+                  "corotated,flap=quadratic");
     c->add_option("--fem-hz", a->options.fem_hz, "FEM steps a second; divides 1000");
     c->add_option("--seed", a->options.seed, "Of everything random in the hand");
     c->add_option("--max-seconds", a->options.max_seconds, "End incomplete after this long");

@@ -24,20 +24,34 @@ double largest(const std::vector<double>& values) noexcept {
     return most;
 }
 
+void note(const tissue::SolidReport& report, StepOutcome& outcome) noexcept {
+    outcome.linear_residual = std::max(outcome.linear_residual, report.linear_residual);
+    outcome.residual = std::max(outcome.residual, report.residual);
+    outcome.iterations = std::max(outcome.iterations, report.iterations);
+    outcome.inverted += report.inverted;
+    outcome.warped |= report.warped;
+}
+
+// A tool that touched this body in the last step will press in this one.
+bool is_pressed(const TissueRig& rig, std::size_t body) noexcept {
+    for (int i = 0; i < kTools; ++i) {
+        if (rig.contact[i].body == static_cast<int>(body) &&
+            (rig.memory[i].touching || rig.memory[i].grasped))
+            return true;
+    }
+    return false;
+}
+
 void free_motions(TissueRig& rig, StepOutcome& outcome) noexcept {
-    for (Body& body : rig.bodies) {
-        if (!body.soft)
+    for (std::size_t b = 0; b < rig.bodies.size(); ++b) {
+        if (!rig.bodies[b].soft)
             continue;
-        SoftBody& soft = *body.soft;
+        SoftBody& soft = *rig.bodies[b].soft;
         if (soft.resting) {
             std::fill(soft.motion_m.begin(), soft.motion_m.end(), 0.0);
             continue;
         }
-        const tissue::StepReport report =
-            tissue::free_motion(soft.model, soft.state, soft.system, soft.motion_m);
-        outcome.linear_residual = std::max(outcome.linear_residual, report.relative_residual);
-        outcome.inverted += report.inverted;
-        outcome.warped |= !report.exact_tangent;
+        note(tissue::free_motion(soft.solid, is_pressed(rig, b), soft.motion_m), outcome);
     }
 }
 
@@ -49,22 +63,6 @@ void wake_touched(TissueRig& rig, const haptics::ContactSolution& solution) noex
         if (body.soft)
             body.soft->resting = false;
     }
-}
-
-// Follows the tangent while that holds, else linearises where the step ends.
-void end_step(TissueRig& rig, SoftBody& soft, double moved_m, StepOutcome& outcome) noexcept {
-    soft.drift_m += moved_m;
-    if (soft.system.inverted == 0 && !(soft.drift_m > rig.config.relinearise_m)) {
-        tissue::advance(soft.model, soft.motion_m, rig.config.step_s, soft.state);
-        tissue::follow_tangent(soft.model, soft.motion_m, soft.system);
-        return;
-    }
-    const tissue::StepEnd end = tissue::finish_step(soft.model, soft.load_n, soft.motion_m,
-                                                    soft.system, soft.descent, soft.state);
-    outcome.descent_iterations = std::max(outcome.descent_iterations, end.iterations);
-    outcome.descent_residual = std::max(outcome.descent_residual, end.relative_residual);
-    soft.drift_m = 0.0;
-    ++soft.linearisations;
 }
 
 void advance_bodies(TissueRig& rig, const haptics::ContactSolution& solution,
@@ -83,14 +81,15 @@ void advance_bodies(TissueRig& rig, const haptics::ContactSolution& solution,
         const bool slow = !touched && !(moved_m > kRestSpeed_mps * rig.config.step_s);
         soft.slow_s = slow ? soft.slow_s + rig.config.step_s : 0.0;
         if (soft.slow_s > kRestTime_s) {
-            std::fill(soft.state.velocity_mps.begin(), soft.state.velocity_mps.end(),
-                      glm::dvec3{0.0});
+            tissue::stop(soft.solid);
             soft.resting = true;
-            soft.state.recovering = false;
             continue;
         }
-        end_step(rig, soft, moved_m, outcome);
-        tissue::place_surface(body.organ->surface, soft.skin_frame, soft.state.position_m,
+        const tissue::SolidReport report =
+            tissue::end_step(soft.solid, soft.load_n, rig.config.relinearise_m, soft.motion_m);
+        note(report, outcome);
+        soft.linearisations += report.new_tangent;
+        tissue::place_surface(body.organ->surface, soft.skin_frame, tissue::position_m(soft.solid),
                               body.skin_m, body.skin_normal);
     }
 }
@@ -99,7 +98,7 @@ double peak_stress_pa(const TissueRig& rig) noexcept {
     double peak = 0.0;
     for (const Body& body : rig.bodies) {
         if (body.soft && !body.soft->resting)
-            peak = std::max(peak, body.soft->system.peak_von_mises_pa);
+            peak = std::max(peak, tissue::peak_von_mises_pa(body.soft->solid));
     }
     return peak;
 }

@@ -38,9 +38,10 @@ struct TissueConfig {
     double reach_m = 5e-3;        // a model exists before the touch: v (L+2) Tf + this
     double patch_radius_m = 14e-3;
     double friction_rigid = 0.05;
-    double relinearise_m = 20e-6; // below: the tangent of before still holds (0.2 % of an
-                                  // element's strain); 0: linearised in every step
-    bool basis = true;            // false: forces only (the monolithic reference)
+    double relinearise_m = 20e-6;   // below: the tangent of before still holds (0.2 % of an
+                                    // element's strain); 0: linearised in every step
+    bool basis = true;              // false: forces only (the monolithic reference)
+    std::vector<tissue::Tier> tier; // by organ; empty: corotated
 };
 
 struct TissueRig {
@@ -65,9 +66,9 @@ struct StepOutcome {
     double peak_stress_pa = 0.0; // von Mises, over the soft bodies that are not resting; where
                                  // nothing moved relinearise_m, that of the last linearisation
     int inverted = 0;
-    int descent_iterations = 0; // worst body; 0: every body did with one Newton iteration
-    double descent_residual = 0.0;
-    bool warped = false; // a body fell back to the warped tangent
+    int iterations = 0; // beyond the first Newton iteration, worst body; see SolidReport
+    double residual = 0.0;
+    bool warped = false; // a body fell back to another tangent than the exact one
 };
 
 TissueRig make_tissue_rig(std::vector<Body> bodies, const TissueConfig& config);

@@ -6,13 +6,14 @@
 
 namespace sim {
 
-std::vector<Body> make_bodies(const LoadedScene& loaded, double step_s) {
+std::vector<Body> make_bodies(const LoadedScene& loaded, double step_s, const ModelChoice& choice) {
     std::vector<Body> bodies;
     TipRadii tips{};
     for (std::size_t t = 0; t < tips.size(); ++t)
         tips[t] = loaded.scene.tool[t].tip_radius_m;
     for (std::size_t i = 0; i < loaded.organ.size(); ++i) {
-        bodies.push_back(make_body(loaded.organ[i], loaded.scene.organ[i].material, tips, step_s));
+        bodies.push_back(make_body(loaded.organ[i], loaded.scene.organ[i].material, tips, step_s,
+                                   choice.empty() ? kUsualTier : choice[i]));
     }
     return bodies;
 }
@@ -51,7 +52,7 @@ void embed_targets(const LoadedScene& loaded, std::span<const TargetWish> target
 
 TissueRig make_tissue(const LoadedScene& loaded, std::span<const TargetWish> targets,
                       const TissueConfig& config) {
-    TissueRig rig = make_tissue_rig(make_bodies(loaded, config.step_s), config);
+    TissueRig rig = make_tissue_rig(make_bodies(loaded, config.step_s, config.tier), config);
     embed_targets(loaded, targets, rig);
     return rig;
 }

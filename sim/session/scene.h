@@ -8,6 +8,7 @@
 #include "sim/loop/haptic_loop.h"
 #include "sim/loop/tissue_loop.h"
 #include "sim/session/anchor.h"
+#include "sim/session/model_choice.h"
 #include "sim/session/scene_place.h"
 #include "sim/view/tissue_look.h"
 #include "tasks/exercise/observation.h"
@@ -69,7 +70,9 @@ std::shared_ptr<const tissue::BoundaryTree> rest_surface(const tissue::BakedOrga
 std::vector<DistanceField> anchor_fields(const LoadedScene& scene, std::size_t index);
 
 /// Bodies at rest, in the order of scene.organ.
-std::vector<Body> make_bodies(const LoadedScene& scene, double step_s);
+/// `choice`: by organ; empty: the usual tier.
+std::vector<Body> make_bodies(const LoadedScene& scene, double step_s,
+                              const ModelChoice& choice = {});
 
 /// A place that an exercise wants on the skin.
 struct TargetWish {

@@ -26,6 +26,13 @@ int period_of(int fem_hz) {
     return period;
 }
 
+std::vector<std::string> organ_names(const Scene& scene) {
+    std::vector<std::string> names;
+    for (const SceneOrgan& organ : scene.organ)
+        names.push_back(organ.name);
+    return names;
+}
+
 std::vector<TargetWish> wishes(const tasks::Exercise& exercise) {
     std::vector<TargetWish> out;
     for (const tasks::ExerciseTarget& target : exercise.target)
@@ -70,6 +77,7 @@ std::unique_ptr<Session> build(const RunOptions& options, LoadedScene scene,
     session->scene = std::move(scene);
     TissueConfig config;
     config.step_s = period * kTick_s;
+    config.tier = parse_model(options.model, organ_names(session->scene.scene));
     session->tissue = make_tissue(session->scene, {}, config);
     if (check)
         refuse_impossible(*session, exercise_file);
@@ -147,6 +155,7 @@ std::unique_ptr<Session> make_session(const RunOptions& options, bool with_hands
 std::unique_ptr<Session> session_of(const tasks::AttemptRow& recorded, const std::string& place) {
     RunOptions options;
     options.coupling = coupling_named(recorded.coupling);
+    options.model = recorded.model;
     options.fem_hz = recorded.fem_hz;
     options.seed = recorded.seed;
     options.hands = recorded.hands;
@@ -183,7 +192,7 @@ tasks::AttemptRow attempt_row(const Session& session, bool realtime) {
     row.exercise_text = session.exercise_text;
     row.scene_text = session.scene.scene.text;
     row.scene_hash = session.scene.hash;
-    row.model = "corotated";
+    row.model = session.options.model;
     row.coupling = session.options.coupling == Coupling::hold ? "hold" : "anchored";
     row.hands = session.options.hands;
     row.seed = session.options.seed;

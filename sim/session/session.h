@@ -17,6 +17,7 @@ struct RunOptions {
     std::string scene;                     // name, directory or path; empty: the exercise's own
     std::string hands = "expert";          // skill name or path of a script
     Coupling coupling = Coupling::anchored;
+    std::string model{tissue::name_of(kUsualTier)}; // see sim/session/model_choice.h
     int fem_hz = 100;
     std::uint64_t seed = 1;
     double max_seconds = 0.0; // 0: the exercise's own limit

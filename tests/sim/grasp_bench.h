@@ -61,7 +61,7 @@ struct Bench {
     glm::dvec3 material_place() const { return sim::place_on(rig.bodies[0], rig.contact[0].at); }
     // of the organ, kinetic and elastic
     double energy_j() const {
-        const sim::SoftBody& soft = *rig.bodies[0].soft;
+        const auto& soft = std::get<tissue::CorotatedSolid>(rig.bodies[0].soft->solid);
         double e = tissue::elastic_energy_j(soft.model, soft.state);
         for (std::size_t v = 0; v < soft.state.velocity_mps.size(); ++v) {
             const glm::dvec3 u = soft.state.velocity_mps[v];

@@ -23,7 +23,7 @@ constexpr double kStatics = std::numeric_limits<double>::infinity();
 
 // A surface point under force: in each tick it moves freely, then takes a force.
 struct FemPoint {
-    const sim::SoftBody& soft;
+    const tissue::CorotatedSolid& soft;
     const tissue::ContactSurface& skin;
     tissue::ContactPoint at;
     std::size_t n = static_cast<std::size_t>(soft.model.unknowns);
@@ -32,17 +32,18 @@ struct FemPoint {
     dmat3 own{0.0};
 
     FemPoint(const Bench& b, double dt_s)
-        : soft(*b.rig.bodies[0].soft), skin(b.rig.bodies[0].organ->surface),
-          at(sim::tissue_point(b.rig.contact[0].at)), answer(3 * n), u(n), v(n), du(n) {
+        : soft(std::get<tissue::CorotatedSolid>(b.rig.bodies[0].soft->solid)),
+          skin(b.rig.bodies[0].organ->surface), at(sim::tissue_point(b.rig.contact[0].at)),
+          answer(3 * n), u(n), v(n), du(n) {
         tissue::linearize(soft.model, soft.state, dt_s, system);
         for (int axis = 0; axis < 3; ++axis) {
             dvec3 direction{0.0};
             direction[axis] = 1.0;
-            tissue::add_row(soft.model, skin, at, direction, 1.0, column(axis));
+            tissue::add_row(soft.model.dof, skin, at, direction, 1.0, column(axis));
         }
         system.factor.solve(answer, 3);
         for (int axis = 0; axis < 3; ++axis)
-            own[axis] = tissue::row_value(soft.model, skin, at, column(axis));
+            own[axis] = tissue::row_value(soft.model.dof, skin, at, column(axis));
     }
     std::span<double> column(int axis) { return std::span(answer).subspan(axis * n, n); }
     dvec3 move() {
@@ -55,7 +56,7 @@ struct FemPoint {
         system.factor.solve(du, 1);
         for (std::size_t i = 0; i < n; ++i)
             u[i] += du[i];
-        return tissue::row_value(soft.model, skin, at, u);
+        return tissue::row_value(soft.model.dof, skin, at, u);
     }
     void take(const dvec3& force_n) {
         for (std::size_t i = 0; i < n; ++i) {
@@ -135,17 +136,18 @@ ModePoint of_rest(const Bench& b, double dt_s) {
                                        .tangent1 = first,
                                        .tangent2 = second,
                                        .held = true};
-    const tissue::CorotatedModel& model = body.soft->model;
+    const auto& soft = std::get<tissue::CorotatedSolid>(body.soft->solid);
+    const tissue::CorotatedModel& model = soft.model;
     tissue::CorotatedSystem system = tissue::make_system(model);
-    tissue::linearize(model, body.soft->state, kStatics, system);
-    tissue::ContactBasis basis = tissue::make_contact_basis(model);
-    tissue::compute_contact_basis(model, body.organ->surface, body.soft->state, system,
+    tissue::linearize(model, soft.state, kStatics, system);
+    tissue::ContactBasis basis = tissue::make_contact_basis(model.unknowns);
+    tissue::compute_contact_basis(model, body.organ->surface, soft.state, system,
                                   std::span(&contact, 1), basis);
     ModePoint out{.dt_s = dt_s};
     const auto unknowns = static_cast<std::size_t>(model.unknowns);
     for (int m = 0; m < basis.modes; ++m) {
         const std::span<const double> shape(basis.shape.data() + m * unknowns, unknowns);
-        out.add(tissue::row_value(model, body.organ->surface, contact.centre, shape),
+        out.add(tissue::row_value(model.dof, body.organ->surface, contact.centre, shape),
                 basis.lambda[m], body.material);
     }
     return out;

@@ -55,9 +55,13 @@ sim::SoftBody some_tissue() {
     const tissue::TetMesh mesh{{{0, 0, 0}, {1e-2, 0, 0}, {0, 1e-2, 0}, {0, 0, 1e-2}},
                                {{0, 1, 2, 3}}};
     const std::array<std::uint8_t, 4> anchored{1, 0, 0, 0};
-    tissue::CorotatedModel model = tissue::make_corotated(mesh, {}, anchored);
-    tissue::CorotatedSystem system = tissue::make_system(model);
-    return {std::move(model), {}, std::move(system), {}, {}, {}, {}, {}, {}, {}};
+    return {tissue::make_solid(tissue::Tier::corotated, {mesh, anchored, {}}, {}, dvec3{0.0}, 1e-2),
+            {},
+            {},
+            {},
+            {},
+            {},
+            {}};
 }
 
 sim::Body body_of(std::vector<dvec3> vertex_m, std::vector<tissue::Triangle> triangles,

@@ -60,7 +60,8 @@ struct Bench {
     bool fem_touches() const { return rig.memory[1].touching; }
     // mean of the artery's nodes below the tip
     glm::dvec3 vessel_velocity_mps() const {
-        const tissue::CorotatedState& state = rig.bodies[kArtery].soft->state;
+        const tissue::CorotatedState& state =
+            std::get<tissue::CorotatedSolid>(rig.bodies[kArtery].soft->solid).state;
         glm::dvec3 sum{0.0};
         double count = 0.0;
         for (std::size_t v = 0; v < state.position_m.size(); ++v)

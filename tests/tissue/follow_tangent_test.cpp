@@ -52,7 +52,7 @@ TEST_CASE("contact basis: refreshed at a later state it has that state's residua
         {0, 0, 1},
         {1, 0, 0},
         {0, 1, 0}};
-    tissue::ContactBasis basis = tissue::make_contact_basis(s.block.model);
+    tissue::ContactBasis basis = tissue::make_contact_basis(s.block.model.unknowns);
     tissue::compute_contact_basis(s.block.model, s.block.skin, s.state, s.system,
                                   std::span(&contact, 1), basis);
     REQUIRE(basis.modes > 5);

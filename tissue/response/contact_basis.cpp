@@ -10,9 +10,7 @@
 // Columns are orthonormalised by Cholesky factors of their Gram matrix, twice (CholeskyQR2,
 // Yamamoto et al. 2015), with pivoting inside the blocks: it is BLAS 3 throughout, and a relative
 // size of 1e-6 is 1e-12 in the Gram matrix, 1e4 above its roundoff.
-#include "tissue/response/contact_basis.h"
-
-#include "tissue/response/small_eigen.h"
+#include "tissue/response/basis_parts.h"
 
 #include <algorithm>
 #include <cblas.h>
@@ -22,24 +20,6 @@ namespace tissue {
 namespace {
 
 using glm::dvec3;
-
-constexpr double kRelativeCut = 1e-6;
-static_assert(kMaxBasis <= kSmall);
-
-// Columns of a contact, moment by moment; the first of one moment make those of the next.
-constexpr int kMoments = 4;
-constexpr std::array<int, kMoments> kFree{7, 3, 1, 0}; // n t1 t2 and the star, n t1 t2, n
-constexpr std::array<int, kMoments> kHeld{3, 3, 3, 2}; // t1 t2 n thrice, t1 t2
-static_assert(7 + 3 + 1 == kModesPerContact && 3 + 3 + 3 + 2 == kModesPerContact);
-
-struct Columns {
-    double* at;
-    std::size_t n;
-    double* operator[](int j) const noexcept { return at + static_cast<std::size_t>(j) * n; }
-    std::span<double> range(int first, int count) const noexcept {
-        return {(*this)[first], static_cast<std::size_t>(count) * n};
-    }
-};
 
 struct Work {
     Columns y, z;
@@ -52,27 +32,6 @@ Work split(ContactBasis& basis, std::size_t n) noexcept {
     const std::size_t wide = n * kMaxBasis;
     return {
         {p, n}, {p + wide, n}, {p + 2 * wide, n}, {p + 2 * wide + n, n}, {p + 2 * wide + 2 * n, n}};
-}
-
-// The loads of one contact in z, from column `first`.
-void load_columns(const CorotatedModel& model, const ContactSurface& surface,
-                  const BasisContact& contact, const Columns& z, int first) noexcept {
-    const auto put = [&](const ContactPoint& at, const dvec3& direction) {
-        const std::span<double> column = z.range(first++, 1);
-        std::fill(column.begin(), column.end(), 0.0);
-        add_row(model, surface, at, direction, 1.0, column);
-    };
-    if (contact.held) {
-        put(contact.centre, contact.tangent1);
-        put(contact.centre, contact.tangent2);
-        put(contact.centre, contact.normal);
-        return;
-    }
-    put(contact.centre, contact.normal);
-    put(contact.centre, contact.tangent1);
-    put(contact.centre, contact.tangent2);
-    for (const ContactPoint& star : contact.star)
-        put(star, contact.normal);
 }
 
 // z = M y: the load that makes the next moment.
@@ -107,19 +66,13 @@ void gram(const double* q, std::size_t n, int columns, SmallMatrix& out) noexcep
                 static_cast<int>(n), 0.0, out.data(), kSmall);
 }
 
-// q <- q L^-T
-void divide(const SmallMatrix& lower, double* q, std::size_t n, int columns) noexcept {
-    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit,
-                static_cast<int>(n), columns, 1.0, lower.data(), kSmall, q, static_cast<int>(n));
-}
-
 // Orthonormal columns of w.y go to `q`, those of w.z that belong to them to w.y. Returns how many.
 int orthonormalise(const Work& w, std::span<const int> blocks, int columns, double* q) noexcept {
     const std::size_t n = w.y.n;
     SmallMatrix lower;
     std::array<int, kSmall> kept;
     gram(w.y[0], n, columns, lower);
-    const int rank = pivoted_cholesky(lower, columns, blocks, kRelativeCut * kRelativeCut, kept);
+    const int rank = pivoted_cholesky(lower, columns, blocks, kBasisCut * kBasisCut, kept);
     for (int j = 0; j < rank; ++j)
         std::copy_n(w.y[kept[j]], n, q + static_cast<std::size_t>(j) * n);
     for (int j = 0; j < rank; ++j)
@@ -133,28 +86,6 @@ int orthonormalise(const Work& w, std::span<const int> blocks, int columns, doub
     divide(lower, q, n, rank);
     divide(lower, w.y[0], n, rank);
     return rank;
-}
-
-// out = q * turn
-void turn_columns(const double* q, const SmallMatrix& turn, std::size_t n, int columns,
-                  double* out) noexcept {
-    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, static_cast<int>(n), columns, columns,
-                1.0, q, static_cast<int>(n), turn.data(), kSmall, 0.0, out, static_cast<int>(n));
-}
-
-// Q^T Z: the projection of A, symmetric but for roundoff; its lower triangle is used.
-void project(const double* q, const double* z, std::size_t n, int columns,
-             SmallMatrix& out) noexcept {
-    cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, columns, columns, static_cast<int>(n), 1.0,
-                q, static_cast<int>(n), z, static_cast<int>(n), 0.0, out.data(), kSmall);
-}
-
-// V^T x
-void coefficients(const ContactBasis& basis, std::span<const double> x,
-                  std::array<double, kMaxBasis>& out) noexcept {
-    const int n = static_cast<int>(x.size());
-    cblas_dgemv(CblasColMajor, CblasTrans, n, basis.modes, 1.0, basis.shape.data(), n, x.data(), 1,
-                0.0, out.data(), 1);
 }
 
 void fill_masses(const CorotatedModel& model, const CorotatedState& state, const Work& w) noexcept {
@@ -180,9 +111,9 @@ int raw_columns(const CorotatedModel& model, const ContactSurface& surface,
     for (int moment = 0; moment < kMoments; ++moment) {
         const int first = columns;
         for (std::size_t c = 0; c < contacts.size(); ++c) {
-            const int count = (contacts[c].held ? kHeld : kFree)[moment];
+            const int count = (contacts[c].held ? kHeldMoments : kFree)[moment];
             if (moment == 0)
-                load_columns(model, surface, contacts[c], w.z, columns);
+                load_columns(model.dof, surface, contacts[c], w.z, columns);
             for (int k = 0; moment > 0 && k < count; ++k)
                 next_moment(w, last[c] + k, columns + k);
             last[c] = columns;
@@ -197,11 +128,11 @@ int raw_columns(const CorotatedModel& model, const ContactSurface& surface,
 
 } // namespace
 
-ContactBasis make_contact_basis(const CorotatedModel& model) {
-    const auto n = static_cast<std::size_t>(model.unknowns);
+ContactBasis make_contact_basis(int unknowns) {
+    const auto n = static_cast<std::size_t>(unknowns);
     ContactBasis basis;
     basis.shape.resize(n * kMaxBasis);
-    basis.work.resize(2 * n * kMaxBasis + 3 * n);
+    basis.work.resize(3 * n * kMaxBasis + 3 * n);
     return basis;
 }
 
@@ -230,7 +161,7 @@ void compute_contact_basis(const CorotatedModel& model, const ContactSurface& su
     // eigenvectors of the projected A are those of K
     SmallMatrix turn;
     std::array<double, kSmall> value{};
-    project(q, w.y[0], n, rank, turn);
+    inner_products(q, w.y[0], n, rank, turn);
     if (positive_eigen(turn, rank, value) == 0)
         return;
     const double rate = 1.0 / system.dt_s;

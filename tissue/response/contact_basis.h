@@ -14,6 +14,8 @@
 #pragma once
 
 #include "tissue/response/contact_rows.h"
+#include "tissue/solver/corotated.h"
+#include "tissue/solver/quadratic.h"
 
 namespace tissue {
 
@@ -37,7 +39,7 @@ struct ContactBasis {
     std::array<double, kMaxBasis> rate{};     // V^T M v
     std::vector<double> work;
 };
-ContactBasis make_contact_basis(const CorotatedModel& model);
+ContactBasis make_contact_basis(int unknowns);
 
 /// Fills `basis` for up to three contacts on one body. `system` must be made at `state`; if it
 /// could not be factored, or there is no contact, the basis has no modes.
@@ -50,5 +52,13 @@ void compute_contact_basis(const CorotatedModel& model, const ContactSurface& su
 /// The same modes at a later state of the same factor: only residual and rate are new.
 void refresh_contact_basis(const CorotatedModel& model, const CorotatedState& state,
                            const CorotatedSystem& system, ContactBasis& basis) noexcept;
+
+/// For a quadratic body after a step. Its columns are solved for roughly and projected exactly: as
+/// a Galerkin basis any columns serve, and an error of the columns counts squared.
+void compute_contact_basis(const QuadraticModel& model, const ContactSurface& surface,
+                           const QuadraticState& state, QuadraticSystem& system,
+                           std::span<const BasisContact> contacts, ContactBasis& basis) noexcept;
+void refresh_contact_basis(const QuadraticModel& model, const QuadraticState& state,
+                           QuadraticSystem& system, ContactBasis& basis) noexcept;
 
 } // namespace tissue

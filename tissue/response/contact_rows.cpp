@@ -7,10 +7,10 @@ namespace {
 
 using glm::dvec3;
 
-void add_vertex_row(const CorotatedModel& model, const ContactSurface& surface,
-                    std::uint32_t vertex, const dvec3& scaled, std::span<double> out) noexcept {
+void add_vertex_row(Dofs dofs, const ContactSurface& surface, std::uint32_t vertex,
+                    const dvec3& scaled, std::span<double> out) noexcept {
     for (std::uint32_t k = surface.row_start[vertex]; k < surface.row_start[vertex + 1]; ++k) {
-        const std::int32_t dof = model.dof[surface.row_node[k]];
+        const std::int32_t dof = dofs[surface.row_node[k]];
         if (dof < 0)
             continue; // an anchored node takes its share and does not move
         const double w = surface.row_weight[k];
@@ -22,19 +22,19 @@ void add_vertex_row(const CorotatedModel& model, const ContactSurface& surface,
 
 } // namespace
 
-void add_row(const CorotatedModel& model, const ContactSurface& surface, const ContactPoint& at,
+void add_row(Dofs dofs, const ContactSurface& surface, const ContactPoint& at,
              const dvec3& direction, double scale, std::span<double> out) noexcept {
     const Triangle& t = surface.triangles[at.triangle];
     for (int corner = 0; corner < 3; ++corner) {
-        add_vertex_row(model, surface, t[corner], scale * at.weight[corner] * direction, out);
+        add_vertex_row(dofs, surface, t[corner], scale * at.weight[corner] * direction, out);
     }
 }
 
-dvec3 vertex_value(const CorotatedModel& model, const ContactSurface& surface, std::uint32_t vertex,
+dvec3 vertex_value(Dofs dofs, const ContactSurface& surface, std::uint32_t vertex,
                    std::span<const double> x) noexcept {
     dvec3 sum{0.0};
     for (std::uint32_t k = surface.row_start[vertex]; k < surface.row_start[vertex + 1]; ++k) {
-        const std::int32_t dof = model.dof[surface.row_node[k]];
+        const std::int32_t dof = dofs[surface.row_node[k]];
         if (dof < 0)
             continue;
         sum += surface.row_weight[k] * dvec3{x[dof], x[dof + 1], x[dof + 2]};
@@ -42,12 +42,12 @@ dvec3 vertex_value(const CorotatedModel& model, const ContactSurface& surface, s
     return sum;
 }
 
-dvec3 row_value(const CorotatedModel& model, const ContactSurface& surface, const ContactPoint& at,
+dvec3 row_value(Dofs dofs, const ContactSurface& surface, const ContactPoint& at,
                 std::span<const double> x) noexcept {
     const Triangle& t = surface.triangles[at.triangle];
     dvec3 sum{0.0};
     for (int corner = 0; corner < 3; ++corner) {
-        sum += at.weight[corner] * vertex_value(model, surface, t[corner], x);
+        sum += at.weight[corner] * vertex_value(dofs, surface, t[corner], x);
     }
     return sum;
 }

@@ -5,9 +5,13 @@
 #pragma once
 
 #include "tissue/mesh/contact_surface.h"
-#include "tissue/solver/corotated.h"
+
+#include <span>
 
 namespace tissue {
+
+/// Of each node, the first of its 3 unknowns; -1: anchored. Every solver numbers them so.
+using Dofs = std::span<const std::int32_t>;
 
 struct ContactPoint {
     std::uint32_t triangle = 0;
@@ -15,15 +19,15 @@ struct ContactPoint {
 };
 
 /// out += scale * sum_i w_i direction on the unknowns of node i. `out`: one right-hand side.
-void add_row(const CorotatedModel& model, const ContactSurface& surface, const ContactPoint& at,
+void add_row(Dofs dofs, const ContactSurface& surface, const ContactPoint& at,
              const glm::dvec3& direction, double scale, std::span<double> out) noexcept;
 
 /// Motion of the contact point for a vector of unknowns: sum_i w_i x_i.
-glm::dvec3 row_value(const CorotatedModel& model, const ContactSurface& surface,
-                     const ContactPoint& at, std::span<const double> x) noexcept;
+glm::dvec3 row_value(Dofs dofs, const ContactSurface& surface, const ContactPoint& at,
+                     std::span<const double> x) noexcept;
 
 /// The same for one vertex of the surface.
-glm::dvec3 vertex_value(const CorotatedModel& model, const ContactSurface& surface,
-                        std::uint32_t vertex, std::span<const double> x) noexcept;
+glm::dvec3 vertex_value(Dofs dofs, const ContactSurface& surface, std::uint32_t vertex,
+                        std::span<const double> x) noexcept;
 
 } // namespace tissue

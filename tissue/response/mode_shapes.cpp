@@ -16,13 +16,13 @@ void turn_shapes(const ContactBasis& basis, int unknowns, std::span<double> by_u
     }
 }
 
-void vertex_shapes(const CorotatedModel& model, const ContactSurface& surface, std::uint32_t vertex,
+void vertex_shapes(Dofs dofs, const ContactSurface& surface, std::uint32_t vertex,
                    std::span<const double> by_unknown, int modes,
                    const std::array<double*, 3>& out) noexcept {
     for (double* line : out)
         std::fill_n(line, modes, 0.0);
     for (std::uint32_t k = surface.row_start[vertex]; k < surface.row_start[vertex + 1]; ++k) {
-        const std::int32_t dof = model.dof[surface.row_node[k]];
+        const std::int32_t dof = dofs[surface.row_node[k]];
         if (dof < 0)
             continue;
         const double w = surface.row_weight[k];

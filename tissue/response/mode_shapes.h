@@ -14,7 +14,7 @@ void turn_shapes(const ContactBasis& basis, int unknowns, std::span<double> by_u
 
 /// out[axis][m] = sum_i w_i shape of mode m at node i along that axis. Each out[axis] holds
 /// `modes` numbers.
-void vertex_shapes(const CorotatedModel& model, const ContactSurface& surface, std::uint32_t vertex,
+void vertex_shapes(Dofs dofs, const ContactSurface& surface, std::uint32_t vertex,
                    std::span<const double> by_unknown, int modes,
                    const std::array<double*, 3>& out) noexcept;
 

@@ -50,6 +50,11 @@ void add_inertia(const QuadraticModel& model, QuadraticSystem& s) noexcept {
     std::copy(s.way.begin(), s.way.end(), s.p.begin());
     std::fill(s.q.begin(), s.q.end(), 0.0f);
     const double stiffness = model.material.damping_stiffness_s / s.dt_s;
+    if (!model.bed_npm.empty()) {
+        scalar_product(model, model.bed_npm, stiffness, s.way, s.damped_n);
+        for (std::size_t i = 0; i < s.damped_n.size(); ++i)
+            s.inertia_n[i] += s.damped_n[i];
+    }
     add_tangent_product(model, s.tangent_at_start, static_cast<float>(stiffness), s.p, s.q);
     for (std::size_t i = 0; i < s.q.size(); ++i)
         s.inertia_n[i] += s.q[i];
@@ -60,7 +65,9 @@ void evaluate(const QuadraticModel& model, QuadraticSystem& s) noexcept {
     const PointSums sums = stresses(model, s.moved_m, s.internal_n, s.tangent, s.stretch);
     s.min_det_f = sums.min_det_f;
     s.energy_j = sums.min_det_f > 0.0 ? sums.energy_j : kInfinity;
-    s.shape_j = sums.shape_j;
+    const double bed_j = add_bed(model, s.moved_m, s.inertia_n, s.internal_n);
+    s.energy_j += bed_j;
+    s.shape_j = sums.shape_j + bed_j;
     add_inertia(model, s);
     for (std::size_t i = 0; i < s.residual_n.size(); ++i)
         s.residual_n[i] = s.momentum_n[i] - s.internal_n[i] - s.inertia_n[i];
@@ -156,6 +163,34 @@ bool go_down(const QuadraticModel& model, QuadraticSystem& s) noexcept {
     return false;
 }
 
+// Iterations from moved_m, at least `least`, until the residual is small enough.
+QuadraticReport newton(const QuadraticModel& model, const QuadraticOptions& options, int least,
+                       QuadraticSystem& s) noexcept {
+    QuadraticReport report;
+    while (report.newton_iterations < options.max_newton &&
+           (report.newton_iterations < least || s.residual > options.newton_tolerance)) {
+        std::copy(s.residual_n.begin(), s.residual_n.end(), s.b.begin());
+        const LinearReport linear = solve_nodes(model, options, s);
+        report.linear_iterations += linear.iterations;
+        report.projected += linear.projected;
+        ++report.newton_iterations;
+        report.linear_residual = std::max(report.linear_residual, linear.relative_residual);
+        if (!go_down(model, s))
+            break;
+    }
+    report.relative_residual = s.residual;
+    report.min_det_f = s.min_det_f;
+    return report;
+}
+
+void read_motion(const QuadraticModel& model, const QuadraticSystem& s,
+                 std::span<double> du) noexcept {
+    for (std::size_t k = 0; k < du.size(); ++k) {
+        const std::int32_t at = model.place_of_unknown[k];
+        du[k] = s.moved_m[at] - s.start_m[at];
+    }
+}
+
 } // namespace
 
 void linearize(const QuadraticModel& model, const QuadraticState& state,
@@ -167,8 +202,9 @@ void linearize(const QuadraticModel& model, const QuadraticState& state,
     s.moved_m = s.start_m;
     add_momentum(model, state, s);
     const PointSums start = stresses(model, s.start_m, s.internal_n, s.tangent_at_start, s.stretch);
+    const double bed_j = add_bed(model, s.start_m, s.inertia_n, s.internal_n);
     s.min_det_f = start.min_det_f;
-    s.energy_j = start.energy_j;
+    s.energy_j = start.energy_j + bed_j;
     s.recovering = !(start.min_det_f > 0.0);
     if (s.recovering) {
         linearize_recovering(model, s);
@@ -179,7 +215,7 @@ void linearize(const QuadraticModel& model, const QuadraticState& state,
     constexpr double kFlat = 0.5;
     const auto better = [&] {
         return s.min_det_f >= kFlat * start.min_det_f &&
-               s.potential_j - s.energy_j + s.shape_j <= start.shape_j;
+               s.potential_j - s.energy_j + s.shape_j <= start.shape_j + bed_j;
     };
     look_ahead(model, state, 1.0, s);
     if (!better())
@@ -190,6 +226,31 @@ void linearize(const QuadraticModel& model, const QuadraticState& state,
     }
     keep_stress(s);
     warp_nodes(model, s);
+}
+
+QuadraticReport finish(const QuadraticModel& model, const QuadraticOptions& options,
+                       std::span<const double> load_n, QuadraticSystem& s,
+                       std::span<double> du) noexcept {
+    QuadraticReport report{.min_det_f = s.min_det_f, .recovering = s.recovering};
+    if (s.recovering) {
+        report.relative_residual = 1.0;
+        return report;
+    }
+    s.trial_m = s.moved_m;
+    for (std::size_t k = 0; k < du.size(); ++k) {
+        const std::int32_t at = model.place_of_unknown[k];
+        s.moved_m[at] = s.start_m[at] + du[k];
+        s.momentum_n[at] += load_n[k];
+    }
+    evaluate(model, s);
+    if (!(s.min_det_f > 0.0)) { // the step leads out of the law: shorten it from where it was seen
+        s.moved_m = s.trial_m;
+        evaluate(model, s);
+    }
+    report = newton(model, options, 0, s);
+    warp_nodes(model, s);
+    read_motion(model, s, du);
+    return report;
 }
 
 void way_and_residual(const QuadraticModel& model, const QuadraticSystem& system,
@@ -211,23 +272,8 @@ QuadraticReport free_motion(const QuadraticModel& model, const QuadraticOptions&
         report.relative_residual = 1.0;
         return report;
     }
-    while (report.newton_iterations < options.max_newton &&
-           (report.newton_iterations == 0 || s.residual > options.newton_tolerance)) {
-        std::copy(s.residual_n.begin(), s.residual_n.end(), s.b.begin());
-        const LinearReport linear = solve_nodes(model, options, s);
-        report.linear_iterations += linear.iterations;
-        report.projected += linear.projected;
-        ++report.newton_iterations;
-        report.linear_residual = std::max(report.linear_residual, linear.relative_residual);
-        if (!go_down(model, s))
-            break;
-    }
-    for (std::size_t k = 0; k < du.size(); ++k) {
-        const std::int32_t at = model.place_of_unknown[k];
-        du[k] = s.moved_m[at] - s.start_m[at];
-    }
-    report.relative_residual = s.residual;
-    report.min_det_f = s.min_det_f;
+    report = newton(model, options, 1, s);
+    read_motion(model, s, du);
     return report;
 }
 

@@ -37,6 +37,7 @@
 #pragma once
 
 #include "tissue/material/hyperelastic.h"
+#include "tissue/mesh/elastic_bed.h"
 #include "tissue/mesh/quadratic_mesh.h"
 #include "tissue/solver/single_factor.h"
 
@@ -87,7 +88,8 @@ struct QuadraticModel {
     std::vector<std::int32_t> tet_start, tet_of_node;
     std::vector<std::int32_t> mass_start, mass_column; // columns times 4
     std::vector<double> mass_kg;
-    std::vector<float> mass_single_kg;
+    // what the bed adds between them, the same for x, y and z; empty without a bed
+    std::vector<double> bed_npm;
     NodeVector<double> weight_n; // M g
     // at rest, on the pattern of the unknowns
     SparsePattern pattern;
@@ -122,8 +124,10 @@ struct QuadraticSystem {
     std::vector<glm::mat3> warp{}; // of each node: mean F around it, of volume 1
     NodeVector<double> start_m{}, moved_m{}, trial_m{}; // displacements from rest
     NodeVector<double> momentum_n{};                    // M v/dt + weight
-    NodeVector<double> internal_n{}, inertia_n{}, residual_n{}, way{};
+    NodeVector<double> internal_n{}, inertia_n{}, residual_n{}, way{}, damped_n{};
     NodeVector<float> b{}, x{}, r{}, z{}, p{}, q{};
+    std::vector<float>
+        scalar_npm{}; // of A between nodes: what mass and bed add, for x, y and z alike
     std::vector<std::int32_t> place_in_order{}; // in a node vector, in elimination order
     std::vector<float> ordered{};
     std::vector<double> unknown{}; // two vectors of unknowns
@@ -149,10 +153,12 @@ struct QuadraticReport {
     bool recovering = false; // a linear step: the residual above was not looked for and is 1
 };
 
-/// Throws as make_reference() does. `anchored`: a byte per node, may be empty.
+/// Throws as make_reference() does. `anchored`: a byte per node, may be empty. `bed`: springs to
+/// the rest place at points of the straight corner tets, seen through the quadratic shapes.
 QuadraticModel make_quadratic(const QuadraticMesh& mesh, const Material& material,
                               std::span<const std::uint8_t> anchored,
-                              const glm::dvec3& gravity_mps2 = glm::dvec3{0.0});
+                              const glm::dvec3& gravity_mps2 = glm::dvec3{0.0},
+                              std::span<const BedSample> bed = {});
 QuadraticState rest_state(const QuadraticModel& model);
 
 /// For steps of dt_s, finite and > 0. Throws std::invalid_argument naming the value.
@@ -169,6 +175,16 @@ LinearReport solve(const QuadraticModel& model, const QuadraticOptions& options,
                    std::span<const double> b, QuadraticSystem& system,
                    std::span<double> x) noexcept;
 
+/// y = K x and y = M x on the unknowns, K at the last linearisation; a recovering body: as at rest.
+void stiffness_product(const QuadraticModel& model, std::span<const double> x,
+                       QuadraticSystem& system, std::span<double> y) noexcept;
+void mass_product(const QuadraticModel& model, std::span<const double> x, QuadraticSystem& system,
+                  std::span<double> y) noexcept;
+
+/// f_int - f_ext on the unknowns where the last step ended or the system was linearised.
+void internal_force(const QuadraticModel& model, const QuadraticSystem& system,
+                    std::span<double> out_n) noexcept;
+
 /// For those who put contact between: the way to where the system was linearised, and the residual
 /// there, on the unknowns. One Newton iteration is du = way + A^-1 residual.
 void way_and_residual(const QuadraticModel& model, const QuadraticSystem& system,
@@ -177,6 +193,13 @@ void way_and_residual(const QuadraticModel& model, const QuadraticSystem& system
 /// The step without contact, from the linearisation on: du on the unknowns.
 QuadraticReport free_motion(const QuadraticModel& model, const QuadraticOptions& options,
                             QuadraticSystem& system, std::span<double> du) noexcept;
+
+/// The end of a step with contact: `du` is way + A^-1 (residual + load) and more or less right, and
+/// Newton goes on from there under the same load until it is. Leaves A and the residual where the
+/// step ends, for right-hand sides there. A recovering body: nothing to be done.
+QuadraticReport finish(const QuadraticModel& model, const QuadraticOptions& options,
+                       std::span<const double> load_n, QuadraticSystem& system,
+                       std::span<double> du) noexcept;
 
 /// x += du, v = du/dt.
 void advance(const QuadraticModel& model, const QuadraticSystem& system, std::span<const double> du,

@@ -51,9 +51,8 @@ void precondition(const QuadraticModel& model, QuadraticSystem& s) noexcept {
 
 // q = A p
 void multiply(const QuadraticModel& model, QuadraticSystem& s) noexcept {
-    const double mass = 1.0 / (s.dt_s * s.dt_s) + model.material.damping_mass_1ps / s.dt_s;
     const double stiffness = 1.0 + model.material.damping_stiffness_s / s.dt_s;
-    mass_product(model, static_cast<float>(mass), s.p, s.q);
+    scalar_product(model, s.scalar_npm, s.p, s.q);
     add_tangent_product(model, s.tangent, static_cast<float>(stiffness), s.p, s.q);
     clear_fixed(model, s.q);
 }
@@ -145,6 +144,47 @@ LinearReport solve(const QuadraticModel& model, const QuadraticOptions& options,
     for (std::size_t k = 0; k < x.size(); ++k)
         x[k] = system.x[model.place_of_unknown[k]];
     return report;
+}
+
+void stiffness_product(const QuadraticModel& model, std::span<const double> x, QuadraticSystem& s,
+                       std::span<double> y) noexcept {
+    if (s.recovering) {
+        multiply(model.pattern, model.rest_stiffness_npm, x, y);
+        return;
+    }
+    std::fill(s.p.begin(), s.p.end(), 0.0f);
+    std::fill(s.q.begin(), s.q.end(), 0.0f);
+    std::fill(s.way.begin(), s.way.end(), 0.0);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        const std::int32_t at = model.place_of_unknown[k];
+        s.way[at] = x[k];
+        s.p[at] = static_cast<float>(x[k]);
+    }
+    add_tangent_product(model, s.tangent, 1.0f, s.p, s.q);
+    if (!model.bed_npm.empty())
+        scalar_product(model, model.bed_npm, 1.0, s.way, s.damped_n);
+    for (std::size_t k = 0; k < y.size(); ++k) {
+        const std::int32_t at = model.place_of_unknown[k];
+        y[k] = s.q[at] + (model.bed_npm.empty() ? 0.0 : s.damped_n[at]);
+    }
+}
+
+void mass_product(const QuadraticModel& model, std::span<const double> x, QuadraticSystem& s,
+                  std::span<double> y) noexcept {
+    std::fill(s.way.begin(), s.way.end(), 0.0);
+    for (std::size_t k = 0; k < x.size(); ++k)
+        s.way[model.place_of_unknown[k]] = x[k];
+    mass_product(model, 1.0, s.way, s.damped_n);
+    for (std::size_t k = 0; k < y.size(); ++k)
+        y[k] = s.damped_n[model.place_of_unknown[k]];
+}
+
+void internal_force(const QuadraticModel& model, const QuadraticSystem& s,
+                    std::span<double> out_n) noexcept {
+    for (std::size_t k = 0; k < out_n.size(); ++k) {
+        const std::int32_t at = model.place_of_unknown[k];
+        out_n[k] = s.internal_n[at] - model.weight_n[at];
+    }
 }
 
 } // namespace tissue

@@ -6,11 +6,25 @@
 
 namespace tissue {
 
-/// y = factor M x. In quadratic_mass.cpp.
-void mass_product(const QuadraticModel& model, double factor, const NodeVector<double>& x,
-                  NodeVector<double>& y) noexcept;
-void mass_product(const QuadraticModel& model, float factor, const NodeVector<float>& x,
-                  NodeVector<float>& y) noexcept;
+/// y = factor S x, S the same for x, y and z and on the pattern of the mass: mass_kg, bed_npm. In
+/// quadratic_mass.cpp.
+void scalar_product(const QuadraticModel& model, std::span<const double> S, double factor,
+                    const NodeVector<double>& x, NodeVector<double>& y) noexcept;
+void scalar_product(const QuadraticModel& model, std::span<const float> S,
+                    const NodeVector<float>& x, NodeVector<float>& y) noexcept;
+
+/// y = factor M x.
+inline void mass_product(const QuadraticModel& model, double factor, const NodeVector<double>& x,
+                         NodeVector<double>& y) noexcept {
+    scalar_product(model, model.mass_kg, factor, x, y);
+}
+
+/// What the bed adds to a matrix on the pattern of the mass, N/m. In quadratic_bed.cpp.
+std::vector<double> bed_stiffness(const QuadraticModel& model, std::span<const BedSample> bed);
+
+/// internal_n += B u, and the energy of the bed. `scratch` is overwritten.
+double add_bed(const QuadraticModel& model, const NodeVector<double>& moved_m,
+               NodeVector<double>& scratch, NodeVector<double>& internal_n) noexcept;
 
 /// Zero for anchored nodes and the sink.
 template <typename T> void clear_fixed(const QuadraticModel& model, NodeVector<T>& v) noexcept {

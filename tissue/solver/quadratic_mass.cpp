@@ -16,13 +16,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 // A node at a time: the four numbers of its neighbours, each times what they have in common. Four
 // sums that do not wait for each other.
 template <typename T>
-void product(const QuadraticModel& model, const T* kg, T factor, const T* x, T* y) noexcept {
+void product(const QuadraticModel& model, const T* S, T factor, const T* x, T* y) noexcept {
     constexpr hn::CappedTag<T, 4> kTag;
     const int step = static_cast<int>(hn::Lanes(kTag));
     for (std::size_t i = 0; i + 1 < model.mass_start.size(); ++i) {
         for (int c = 0; c < 4; c += step) {
             const auto term = [&](std::int32_t k, hn::Vec<decltype(kTag)> sum) {
-                return hn::MulAdd(hn::Set(kTag, kg[k]),
+                return hn::MulAdd(hn::Set(kTag, S[k]),
                                   hn::LoadU(kTag, x + model.mass_column[k] + c), sum);
             };
             std::int32_t k = model.mass_start[i];
@@ -44,11 +44,12 @@ void product(const QuadraticModel& model, const T* kg, T factor, const T* x, T* 
 
 } // namespace
 
-void product_double(const QuadraticModel& model, double factor, const double* x, double* y) {
-    product(model, model.mass_kg.data(), factor, x, y);
+void product_double(const QuadraticModel& model, const double* S, double factor, const double* x,
+                    double* y) {
+    product(model, S, factor, x, y);
 }
-void product_single(const QuadraticModel& model, float factor, const float* x, float* y) {
-    product(model, model.mass_single_kg.data(), factor, x, y);
+void product_single(const QuadraticModel& model, const float* S, const float* x, float* y) {
+    product(model, S, 1.0f, x, y);
 }
 
 } // namespace tissue::HWY_NAMESPACE
@@ -60,14 +61,14 @@ namespace tissue {
 HWY_EXPORT(product_double);
 HWY_EXPORT(product_single);
 
-void mass_product(const QuadraticModel& model, double factor, const NodeVector<double>& x,
-                  NodeVector<double>& y) noexcept {
-    HWY_DYNAMIC_DISPATCH(product_double)(model, factor, x.data(), y.data());
+void scalar_product(const QuadraticModel& model, std::span<const double> S, double factor,
+                    const NodeVector<double>& x, NodeVector<double>& y) noexcept {
+    HWY_DYNAMIC_DISPATCH(product_double)(model, S.data(), factor, x.data(), y.data());
 }
 
-void mass_product(const QuadraticModel& model, float factor, const NodeVector<float>& x,
-                  NodeVector<float>& y) noexcept {
-    HWY_DYNAMIC_DISPATCH(product_single)(model, factor, x.data(), y.data());
+void scalar_product(const QuadraticModel& model, std::span<const float> S,
+                    const NodeVector<float>& x, NodeVector<float>& y) noexcept {
+    HWY_DYNAMIC_DISPATCH(product_single)(model, S.data(), x.data(), y.data());
 }
 
 } // namespace tissue

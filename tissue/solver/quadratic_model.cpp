@@ -3,8 +3,9 @@
 // where it lets the reference solver check the mesh and integrate mass and stiffness.
 #include "tissue/reference/reference.h"
 #include "tissue/reference/tet10.h"
-#include "tissue/solver/quadratic.h"
+#include "tissue/solver/quadratic_linear.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -107,16 +108,35 @@ void add_mass(const ReferenceModel& reference, QuadraticModel& m) {
         for (const Entry& e : row) {
             m.mass_column.push_back(e.column);
             m.mass_kg.push_back(e.kg);
-            m.mass_single_kg.push_back(static_cast<float>(e.kg));
         }
         m.mass_start.push_back(static_cast<std::int32_t>(m.mass_column.size()));
+    }
+}
+
+// The bed in both shapes of the stiffness at rest: between nodes, and on the pattern.
+void hold(std::span<const BedSample> bed, QuadraticModel& m) {
+    m.bed_npm = bed_stiffness(m, bed);
+    for (int column = 0; column < m.unknowns; ++column) {
+        const std::int32_t from = m.place_of_unknown[column];
+        for (std::int32_t k = m.pattern.column_start[column];
+             k < m.pattern.column_start[column + 1]; ++k) {
+            const std::int32_t to = m.place_of_unknown[m.pattern.row[k]];
+            if (to % 4 != from % 4)
+                continue;
+            const std::int32_t node = to / 4;
+            const auto first = m.mass_column.begin() + m.mass_start[node],
+                       last = m.mass_column.begin() + m.mass_start[node + 1];
+            const auto entry = std::find(first, last, 4 * (from / 4));
+            m.rest_stiffness_npm[k] += m.bed_npm[entry - m.mass_column.begin()];
+        }
     }
 }
 
 } // namespace
 
 QuadraticModel make_quadratic(const QuadraticMesh& mesh, const Material& material,
-                              std::span<const std::uint8_t> anchored, const dvec3& gravity_mps2) {
+                              std::span<const std::uint8_t> anchored, const dvec3& gravity_mps2,
+                              std::span<const BedSample> bed) {
     std::vector<std::uint8_t> held(anchored.begin(), anchored.end());
     for (std::uint8_t& flag : held)
         flag = flag != 0 ? kHeld : 0;
@@ -143,6 +163,8 @@ QuadraticModel make_quadratic(const QuadraticMesh& mesh, const Material& materia
         m.rest_stiffness_npm.push_back(system.stiffness[k]);
         m.rest_mass_kg.push_back(reference.mass_kg[k]);
     }
+    if (!bed.empty())
+        hold(bed, m);
     return m;
 }
 
@@ -164,6 +186,10 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s) {
     if (!s.exact.factor(matrix))
         throw std::invalid_argument("the stiffness at rest is not positive definite: young_pa = " +
                                     std::to_string(model.material.young_pa));
+    for (std::size_t k = 0; k < model.mass_kg.size(); ++k) {
+        const double bed = model.bed_npm.empty() ? 0.0 : model.bed_npm[k];
+        s.scalar_npm.push_back(static_cast<float>(mass * model.mass_kg[k] + stiffness * bed));
+    }
     s.single = make_single_factor(s.exact.supernodes());
 
     for (const int k : s.single.order)
@@ -175,7 +201,7 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s) {
     s.stretch.resize(model.groups.size());
     s.warp.assign(nodes, glm::mat3(1.0f));
     for (auto* v : {&s.start_m, &s.moved_m, &s.trial_m, &s.momentum_n, &s.internal_n, &s.inertia_n,
-                    &s.residual_n, &s.way})
+                    &s.residual_n, &s.way, &s.damped_n})
         v->assign(places, 0.0);
     for (auto* v : {&s.b, &s.x, &s.r, &s.z, &s.p, &s.q})
         v->assign(places, 0.0f);

@@ -25,7 +25,7 @@ struct Motion {
 
 Motion nearest_motion(const QuadraticModel& model, const QuadraticSystem& s) noexcept {
     Motion m;
-    if (model.fixed.size() > 1) // beside the sink
+    if (model.fixed.size() > 1 || !model.bed_npm.empty()) // beside the sink
         return m;
     const std::size_t nodes = model.mesh.rest_m.size();
     for (std::size_t i = 0; i < nodes; ++i) {
@@ -65,10 +65,11 @@ void linearize_recovering(const QuadraticModel& model, QuadraticSystem& s) noexc
         const std::int32_t d = model.dof[i];
         if (d < 0)
             continue;
-        const dvec3 f =
-            at(s.momentum_n, i) - motion.R * dvec3{force[d], force[d + 1], force[d + 2]};
-        for (int c = 0; c < 3; ++c)
-            s.residual_n[4 * i + c] = f[c];
+        const dvec3 f = motion.R * dvec3{force[d], force[d + 1], force[d + 2]};
+        for (int c = 0; c < 3; ++c) {
+            s.internal_n[4 * i + c] = f[c];
+            s.residual_n[4 * i + c] = s.momentum_n[4 * i + c] - f[c];
+        }
     }
 }
 

@@ -9,7 +9,7 @@
 namespace tissue {
 
 /// Residual on the unknowns, from start_m and momentum_n, and QuadraticSystem::turned: 1 where
-/// anything is anchored, otherwise the rotation nearest to the motion since rest.
+/// anything holds it, otherwise the rotation nearest to the motion since rest.
 void linearize_recovering(const QuadraticModel& model, QuadraticSystem& system) noexcept;
 
 /// A^-1 b in place, on the unknowns.

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "tissue/solver/corotated.h"
+#include "tissue/solver/quadratic.h"
 
 namespace tissue {
 
@@ -21,5 +22,9 @@ inline double von_mises_squared(const glm::dmat3& s) noexcept {
 /// rotation per tet: for tests and pictures, the loop reads CorotatedSystem::peak_von_mises_pa.
 void von_mises_pa(const CorotatedModel& model, std::span<const glm::dvec3> position_m,
                   std::span<double> out_pa) noexcept;
+
+/// Peak over the quadrature points of a quadratic body where its tangent was made last. Neo-Hooke:
+/// dev(sigma) = mu J^(-5/3) dev(F F^T); a point that is inside out counts as 0.
+double peak_von_mises_pa(const QuadraticModel& model, const QuadraticSystem& system) noexcept;
 
 } // namespace tissue

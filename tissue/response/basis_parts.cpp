@@ -1,0 +1,53 @@
+// See the header.
+#include "tissue/response/basis_parts.h"
+
+#include <algorithm>
+#include <cblas.h>
+
+namespace tissue {
+
+void load_columns(Dofs dofs, const ContactSurface& surface, const BasisContact& contact,
+                  const Columns& z, int first) noexcept {
+    const auto put = [&](const ContactPoint& at, const glm::dvec3& direction) {
+        const std::span<double> column = z.range(first++, 1);
+        std::fill(column.begin(), column.end(), 0.0);
+        add_row(dofs, surface, at, direction, 1.0, column);
+    };
+    if (contact.held) {
+        put(contact.centre, contact.tangent1);
+        put(contact.centre, contact.tangent2);
+        put(contact.centre, contact.normal);
+        return;
+    }
+    put(contact.centre, contact.normal);
+    put(contact.centre, contact.tangent1);
+    put(contact.centre, contact.tangent2);
+    for (const ContactPoint& star : contact.star)
+        put(star, contact.normal);
+}
+
+void inner_products(const double* a, const double* b, std::size_t n, int columns,
+                    SmallMatrix& out) noexcept {
+    cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, columns, columns, static_cast<int>(n), 1.0,
+                a, static_cast<int>(n), b, static_cast<int>(n), 0.0, out.data(), kSmall);
+}
+
+void divide(const SmallMatrix& lower, double* q, std::size_t n, int columns) noexcept {
+    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit,
+                static_cast<int>(n), columns, 1.0, lower.data(), kSmall, q, static_cast<int>(n));
+}
+
+void turn_columns(const double* q, const SmallMatrix& turn, std::size_t n, int columns,
+                  double* out) noexcept {
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, static_cast<int>(n), columns, columns,
+                1.0, q, static_cast<int>(n), turn.data(), kSmall, 0.0, out, static_cast<int>(n));
+}
+
+void coefficients(const ContactBasis& basis, std::span<const double> x,
+                  std::array<double, kMaxBasis>& out) noexcept {
+    const int n = static_cast<int>(x.size());
+    cblas_dgemv(CblasColMajor, CblasTrans, n, basis.modes, 1.0, basis.shape.data(), n, x.data(), 1,
+                0.0, out.data(), 1);
+}
+
+} // namespace tissue

@@ -1,0 +1,143 @@
+// The contact basis of a quadratic body. Tissue loop, after every step with a tool near.
+//
+// A is never assembled, and a solve is a few iterations of conjugate gradients. A Galerkin basis
+// does not need exact columns: what matters is the space they span, and K in it is exact, because
+// each column is multiplied by it. So columns x come from rough solves and are carried with m = M x
+//   V = X L^-T, L L^T = X^T M X;  V^T A V = of_m 1 + of_k V^T K V = U (of_m + of_k Lambda) U^T
+#include "tissue/response/basis_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tissue {
+namespace {
+
+struct Work {
+    Columns x, mass_x, load;
+    std::span<double> vector;
+};
+
+Work split(ContactBasis& basis, std::size_t n) noexcept {
+    double* p = basis.work.data();
+    const std::size_t wide = n * kMaxBasis;
+    return {{p, n}, {p + wide, n}, {p + 2 * wide, n}, {p + 3 * wide, n}};
+}
+
+// x = A^-1 load, roughly, of unit M-norm. A load that moves nothing stays zero.
+void solve_columns(const QuadraticModel& model, const Work& w, int first, int count,
+                   QuadraticSystem& system) noexcept {
+    constexpr QuadraticOptions kRough{.linear_tolerance = 3e-2, .max_linear = 3};
+    for (int j = first; j < first + count; ++j) {
+        const std::span<double> x = w.x.range(j, 1), mass_x = w.mass_x.range(j, 1);
+        solve(model, kRough, w.load.range(j, 1), system, x);
+        mass_product(model, x, system, mass_x);
+        double norm2 = 0.0;
+        for (std::size_t i = 0; i < x.size(); ++i)
+            norm2 += x[i] * mass_x[i];
+        const double scale = norm2 > 0.0 ? 1.0 / std::sqrt(norm2) : 0.0;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            x[i] *= scale;
+            mass_x[i] *= scale;
+        }
+    }
+}
+
+int raw_columns(const QuadraticModel& model, const ContactSurface& surface,
+                std::span<const BasisContact> contacts, QuadraticSystem& system, const Work& w,
+                std::array<int, kMoments>& blocks) noexcept {
+    std::array<int, kMaxContacts> last{}; // first column of each contact, one moment before
+    int columns = 0;
+    for (int moment = 0; moment < kMoments; ++moment) {
+        const int first = columns;
+        for (std::size_t c = 0; c < contacts.size(); ++c) {
+            const int count = (contacts[c].held ? kHeldMoments : kFree)[moment];
+            if (moment == 0)
+                load_columns(model.dof, surface, contacts[c], w.load, columns);
+            for (int k = 0; moment > 0 && k < count; ++k)
+                std::copy_n(w.mass_x[last[c] + k], w.x.n, w.load[columns + k]);
+            last[c] = columns;
+            columns += count;
+        }
+        blocks[moment] = columns - first;
+        solve_columns(model, w, first, columns - first, system);
+    }
+    return columns;
+}
+
+// M-orthonormal columns in `q`; by Cholesky factors of the Gram matrix, twice, as in
+// contact_basis.cpp. Returns how many.
+int orthonormalise(const Work& w, std::span<const int> blocks, int columns, double* q) noexcept {
+    const std::size_t n = w.x.n;
+    SmallMatrix lower;
+    std::array<int, kSmall> kept;
+    inner_products(w.x[0], w.mass_x[0], n, columns, lower);
+    const int rank = pivoted_cholesky(lower, columns, blocks, kBasisCut * kBasisCut, kept);
+    for (int j = 0; j < rank; ++j) {
+        std::copy_n(w.x[kept[j]], n, q + static_cast<std::size_t>(j) * n);
+        std::copy_n(w.mass_x[kept[j]], n, w.load[j]);
+    }
+    for (int pass = 0; pass < 2; ++pass) {
+        if (pass == 1) {
+            inner_products(q, w.load[0], n, rank, lower);
+            if (!cholesky(lower, rank))
+                return 0;
+        }
+        divide(lower, q, n, rank);
+        divide(lower, w.load[0], n, rank);
+    }
+    return rank;
+}
+
+} // namespace
+
+void compute_contact_basis(const QuadraticModel& model, const ContactSurface& surface,
+                           const QuadraticState& state, QuadraticSystem& system,
+                           std::span<const BasisContact> contacts, ContactBasis& basis) noexcept {
+    basis.modes = 0;
+    if (contacts.empty() || contacts.size() > kMaxContacts)
+        return;
+    const auto n = static_cast<std::size_t>(model.unknowns);
+    const Work w = split(basis, n);
+    std::array<int, kMoments> blocks{};
+    const int columns = raw_columns(model, surface, contacts, system, w, blocks);
+    double* q = basis.shape.data();
+    const int rank = orthonormalise(w, blocks, columns, q);
+    for (int j = 0; j < rank; ++j) {
+        stiffness_product(model, {q + static_cast<std::size_t>(j) * n, n}, system, w.x.range(j, 1));
+    }
+    SmallMatrix turn;
+    std::array<double, kSmall> value{};
+    inner_products(q, w.x[0], n, rank, turn);
+    const double rate = 1.0 / system.dt_s;
+    const double of_m = rate * rate + model.material.damping_mass_1ps * rate;
+    const double of_k = 1.0 + model.material.damping_stiffness_s * rate;
+    for (int j = 0; j < rank; ++j) {
+        for (int i = j; i < rank; ++i)
+            turn[j][i] = 0.5 * of_k * (turn[j][i] + turn[i][j]) + (i == j ? of_m : 0.0);
+    }
+    if (positive_eigen(turn, rank, value) == 0)
+        return;
+    turn_columns(q, turn, n, rank, w.x[0]);
+    std::copy_n(w.x[0], n * static_cast<std::size_t>(rank), q);
+    for (int j = 0; j < rank; ++j)
+        basis.lambda[j] = (value[j] - of_m) / of_k;
+    basis.modes = rank;
+    refresh_contact_basis(model, state, system, basis);
+}
+
+void refresh_contact_basis(const QuadraticModel& model, const QuadraticState& state,
+                           QuadraticSystem& system, ContactBasis& basis) noexcept {
+    const auto n = static_cast<std::size_t>(model.unknowns);
+    const Work w = split(basis, n);
+    const std::span<double> velocity = w.x.range(0, 1), vector{w.vector.data(), n};
+    for (std::size_t i = 0; i < model.dof.size(); ++i) {
+        for (int k = 0; model.dof[i] >= 0 && k < 3; ++k)
+            velocity[model.dof[i] + k] = state.velocity_mps[i][k];
+    }
+    mass_product(model, velocity, system, vector);
+    coefficients(basis, vector, basis.rate);
+    internal_force(model, system, vector);
+    coefficients(basis, vector, basis.residual);
+}
+
+} // namespace tissue

@@ -1,0 +1,233 @@
+// See the header.
+#include "tissue/solver/solid.h"
+
+#include "tissue/mesh/quadratic_mesh.h"
+#include "tissue/solver/stress.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace tissue {
+namespace {
+
+CorotatedSolid make_linear_tets(bool linear, const SolidMesh& mesh, const Material& material,
+                                const glm::dvec3& gravity_mps2, double dt_s) {
+    CorotatedModel model =
+        make_corotated(mesh.mesh, material, mesh.anchored, gravity_mps2, mesh.bed);
+    CorotatedState state = rest_state(model);
+    CorotatedSystem system = make_system(model);
+    linearize(model, state, dt_s, system);
+    Descent descent = make_descent(model);
+    return {std::move(model), std::move(state), std::move(system), std::move(descent), linear};
+}
+
+QuadraticSolid make_quadratic_tets(const SolidMesh& mesh, const Material& material,
+                                   const glm::dvec3& gravity_mps2, double dt_s) {
+    const QuadraticMesh ten = quadratic_mesh(mesh.mesh);
+    std::vector<std::uint8_t> anchored(mesh.anchored.begin(), mesh.anchored.end());
+    if (!anchored.empty()) {
+        anchored.resize(ten.rest_m.size(), 0);
+        for (const Tet10& tet : ten.tets) {
+            for (std::size_t e = 0; e < kEdge.size(); ++e) {
+                anchored[tet[4 + e]] =
+                    anchored[tet[kEdge[e][0]]] != 0 && anchored[tet[kEdge[e][1]]] != 0;
+            }
+        }
+    }
+    QuadraticModel model = make_quadratic(ten, material, anchored, gravity_mps2, mesh.bed);
+    QuadraticState state = rest_state(model);
+    QuadraticSystem system = make_system(model, dt_s);
+    linearize(model, state, system);
+    return {std::move(model), std::move(state), std::move(system), {}};
+}
+
+double largest(std::span<const double> values) noexcept {
+    double most = 0.0;
+    for (const double v : values)
+        most = std::max(most, std::abs(v));
+    return most;
+}
+
+SolidReport motion(CorotatedSolid& s, bool, std::span<double> du) noexcept {
+    const StepReport report = free_motion(s.model, s.state, s.system, du);
+    return {.linear_residual = report.relative_residual,
+            .inverted = report.inverted,
+            .warped = !report.exact_tangent};
+}
+
+SolidReport of(const QuadraticReport& report, int needed) noexcept {
+    return {.linear_residual = report.linear_residual,
+            .residual = report.relative_residual,
+            .iterations = std::max(0, report.newton_iterations - needed),
+            .inverted = report.recovering ? 1 : 0,
+            .warped = report.projected > 0};
+}
+
+// One Newton iteration from where the step begins: contact will be added to it.
+SolidReport motion(QuadraticSolid& s, bool touched, std::span<double> du) noexcept {
+    linearize(s.model, s.state, s.system);
+    s.begun = true;
+    if (!touched || s.system.recovering)
+        return of(free_motion(s.model, s.options, s.system, du), 1);
+    const std::size_t n = du.size();
+    const std::span<double> way(s.system.unknown.data(), n), right(way.data() + n, n);
+    way_and_residual(s.model, s.system, way, right);
+    const LinearReport linear = solve(s.model, s.options, right, s.system, du);
+    for (std::size_t k = 0; k < n; ++k)
+        du[k] += way[k];
+    return {.linear_residual = linear.relative_residual, .warped = linear.projected};
+}
+
+double solve_block(CorotatedSolid& s, std::span<double> block, int columns) noexcept {
+    s.system.factor.solve(block, columns);
+    return 0.0;
+}
+
+double solve_block(QuadraticSolid& s, std::span<double> block, int columns) noexcept {
+    const auto n = static_cast<std::size_t>(s.model.unknowns);
+    double worst = 0.0;
+    for (int j = 0; j < columns; ++j) {
+        const std::span<double> column = block.subspan(static_cast<std::size_t>(j) * n, n);
+        const LinearReport report = solve(s.model, s.options, column, s.system, column);
+        worst = std::max(worst, report.relative_residual);
+    }
+    return worst;
+}
+
+SolidReport end(CorotatedSolid& s, std::span<const double> load_n, double relinearise_m,
+                std::span<double> du) noexcept {
+    s.drift_m += largest(du);
+    if (s.linear || (s.system.inverted == 0 && !(s.drift_m > relinearise_m))) {
+        advance(s.model, du, s.system.dt_s, s.state);
+        follow_tangent(s.model, du, s.system);
+        return {};
+    }
+    const StepEnd end = finish_step(s.model, load_n, du, s.system, s.descent, s.state);
+    s.drift_m = 0.0;
+    return {.residual = end.relative_residual,
+            .iterations = end.iterations,
+            .inverted = end.inverted,
+            .new_tangent = true};
+}
+
+SolidReport end(QuadraticSolid& s, std::span<const double> load_n, double relinearise_m,
+                std::span<double> du) noexcept {
+    if (!s.begun)
+        linearize(s.model, s.state, s.system);
+    s.begun = false;
+    SolidReport report = of(finish(s.model, s.options, load_n, s.system, du), 0);
+    advance(s.model, s.system, du, s.state);
+    s.drift_m += largest(du);
+    report.new_tangent = s.drift_m > relinearise_m;
+    if (report.new_tangent)
+        s.drift_m = 0.0;
+    return report;
+}
+
+double peak_pa(const CorotatedSolid& s) noexcept {
+    return s.system.peak_von_mises_pa;
+}
+double peak_pa(const QuadraticSolid& s) noexcept {
+    return peak_von_mises_pa(s.model, s.system);
+}
+
+double energy_j(const CorotatedSolid& s) noexcept {
+    return elastic_energy_j(s.model, s.state);
+}
+double energy_j(const QuadraticSolid& s) noexcept {
+    return s.system.energy_j;
+}
+
+} // namespace
+
+std::optional<Tier> tier_named(std::string_view name) noexcept {
+    for (std::size_t t = 0; t < kTierNames.size(); ++t) {
+        if (kTierNames[t] == name)
+            return static_cast<Tier>(t);
+    }
+    return std::nullopt;
+}
+
+Solid make_solid(Tier tier, const SolidMesh& mesh, const Material& material,
+                 const glm::dvec3& gravity_mps2, double dt_s) {
+    if (!(dt_s > 0.0) || !std::isfinite(dt_s))
+        throw std::invalid_argument("dt_s = " + std::to_string(dt_s) +
+                                    ": must be finite and greater than 0");
+    switch (tier) {
+    case Tier::linear:
+        return make_linear_tets(true, mesh, material, gravity_mps2, dt_s);
+    case Tier::corotated:
+        return make_linear_tets(false, mesh, material, gravity_mps2, dt_s);
+    case Tier::quadratic:
+        return make_quadratic_tets(mesh, material, gravity_mps2, dt_s);
+    case Tier::rigid:
+        break;
+    }
+    throw std::invalid_argument("tier rigid: nothing of it deforms");
+}
+
+Tier tier_of(const Solid& solid) noexcept {
+    if (const auto* s = std::get_if<CorotatedSolid>(&solid))
+        return s->linear ? Tier::linear : Tier::corotated;
+    return Tier::quadratic;
+}
+
+int unknowns(const Solid& solid) noexcept {
+    return std::visit([](const auto& s) { return s.model.unknowns; }, solid);
+}
+
+const Material& material_of(const Solid& solid) noexcept {
+    return std::visit([](const auto& s) -> const Material& { return s.model.material; }, solid);
+}
+
+std::span<const std::int32_t> dofs(const Solid& solid) noexcept {
+    return std::visit([](const auto& s) { return std::span<const std::int32_t>(s.model.dof); },
+                      solid);
+}
+
+std::span<const glm::dvec3> rest_m(const Solid& solid) noexcept {
+    return std::visit(
+        [](const auto& s) { return std::span<const glm::dvec3>(s.model.mesh.rest_m); }, solid);
+}
+
+std::span<const glm::dvec3> position_m(const Solid& solid) noexcept {
+    return std::visit([](const auto& s) { return std::span<const glm::dvec3>(s.state.position_m); },
+                      solid);
+}
+
+SolidReport free_motion(Solid& solid, bool touched, std::span<double> du) noexcept {
+    return std::visit([&](auto& s) { return motion(s, touched, du); }, solid);
+}
+
+double solve(Solid& solid, std::span<double> block, int columns) noexcept {
+    return std::visit([&](auto& s) { return solve_block(s, block, columns); }, solid);
+}
+
+SolidReport end_step(Solid& solid, std::span<const double> load_n, double relinearise_m,
+                     std::span<double> du) noexcept {
+    return std::visit([&](auto& s) { return end(s, load_n, relinearise_m, du); }, solid);
+}
+
+void stop(Solid& solid) noexcept {
+    std::visit(
+        [](auto& s) {
+            std::fill(s.state.velocity_mps.begin(), s.state.velocity_mps.end(), glm::dvec3{0.0});
+        },
+        solid);
+    if (auto* s = std::get_if<CorotatedSolid>(&solid))
+        s->state.recovering = false;
+    if (auto* s = std::get_if<QuadraticSolid>(&solid))
+        std::fill(s->state.gain_mps.begin(), s->state.gain_mps.end(), glm::dvec3{0.0});
+}
+
+double peak_von_mises_pa(const Solid& solid) noexcept {
+    return std::visit([](const auto& s) { return peak_pa(s); }, solid);
+}
+
+double elastic_energy_j(const Solid& solid) noexcept {
+    return std::visit([](const auto& s) { return energy_j(s); }, solid);
+}
+
+} // namespace tissue
