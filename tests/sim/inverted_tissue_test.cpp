@@ -90,9 +90,9 @@ TEST_CASE("tissue loop: a body that recovers is watched until it rests, then no 
     bench.step();
     CHECK(bench.liver().state.recovering);
     int steps = 0;
-    while (!bench.liver().resting && ++steps < 3000)
+    while (!bench.rig.bodies[0].soft->resting && ++steps < 3000)
         bench.step();
-    CHECK(bench.liver().resting);
+    CHECK(bench.rig.bodies[0].soft->resting);
     CHECK(bench.liver().system.inverted == 0);
     CHECK_FALSE(bench.liver().state.recovering);
     for (std::size_t i = 0; i < bench.liver().state.position_m.size(); ++i)
