@@ -64,6 +64,19 @@ void fill_tips(Body& body, const TipRadii& tip_radius_m) {
     }
 }
 
+// The skin of an organ as rigid scenery.
+std::shared_ptr<const tissue::BakedOrgan> scenery_of(const tissue::BakedOrgan& organ) {
+    auto rigid = std::make_shared<tissue::BakedOrgan>();
+    rigid->name = organ.name;
+    rigid->rigid = true;
+    rigid->surface.rest_m = organ.surface.rest_m;
+    rigid->surface.triangles = organ.surface.triangles;
+    rigid->surface.neighbours = organ.surface.neighbours;
+    rigid->material = organ.material;
+    rigid->tip_radius_max_m = organ.tip_radius_max_m;
+    return rigid;
+}
+
 double mixed(const std::vector<double>& values, const tissue::Triangle& t,
              const glm::dvec3& w) noexcept {
     return w.x * values[t[0]] + w.y * values[t[1]] + w.z * values[t[2]];
@@ -79,7 +92,8 @@ glm::dvec3 mixed(const std::vector<glm::dvec3>& values, const tissue::Triangle& 
 Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Material& material,
                const TipRadii& tip_radius_m, double dt_s, tissue::Tier tier) {
     Body body;
-    body.organ = std::move(organ);
+    body.organ =
+        tier == tissue::Tier::rigid && !organ->rigid ? scenery_of(*organ) : std::move(organ);
     body.material = material;
     const tissue::ContactSurface& skin = body.organ->surface;
     const std::size_t vertices = skin.rest_m.size();
@@ -92,7 +106,7 @@ Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Ma
     body.thinness_1pm.assign(vertices, 0.0);
     body.normal_mpn.assign(vertices, 0.0);
     body.tangential_mpn.assign(vertices, 0.0);
-    if (body.organ->rigid || tier == tissue::Tier::rigid) {
+    if (body.organ->rigid) {
         tissue::place_surface(skin, {}, {}, body.skin_m, body.skin_normal);
         return body;
     }

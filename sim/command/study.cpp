@@ -139,6 +139,7 @@ void add_study(CLI::App& app, int& exit_code) {
     add_failures_study(*c, exit_code);
     add_scaling_study(*c, exit_code);
     add_study_contact(*c);
+    add_why_study(*c);
 }
 
 } // namespace sim

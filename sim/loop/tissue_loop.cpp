@@ -229,6 +229,13 @@ void see_targets(TissueRig& rig, const ScopeNow& scope, ClearRays& out) noexcept
     }
 }
 
+glm::dvec3 skin_under(const TissueRig& rig, int tool) noexcept {
+    const FemContact& contact = rig.contact[tool];
+    const glm::dvec3 place_m = place_on(rig.bodies[contact.body], contact.at);
+    const Dimple dimple = dimple_of(rig, tool);
+    return dimple.body < 0 ? place_m : place_m + sunk_m(dimple, place_m) * dimple.down;
+}
+
 void place_targets(const TissueRig& rig, TargetPlaces& out) noexcept {
     std::array<Dimple, kTools> dimples;
     for (int i = 0; i < kTools; ++i)

@@ -233,6 +233,8 @@ ProgressNow progress_now(const Attempt& attempt, const tasks::Exercise& exercise
 
 tasks::StepTrace run_step(Session& session, const ToolsNow& tools, TissueAnswer& answer) {
     const auto start = std::chrono::steady_clock::now();
+    if (session.poses)
+        session.poses->push_back(tools);
     StepOutcome outcome = tissue_step(session.tissue, tools, answer);
     const double us =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();

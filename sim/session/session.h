@@ -46,6 +46,7 @@ struct Session {
     // what the tissue did worst, for the report
     double worst_linear_residual = 0.0;
     int warped_steps = 0, inverted_steps = 0;
+    std::vector<ToolsNow>* poses = nullptr; // if set: what each FEM step saw is added
 };
 
 /// Loads and builds everything, and checks that every target can be done by its role. Throws with

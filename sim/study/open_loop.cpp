@@ -12,20 +12,6 @@
 namespace sim {
 namespace {
 
-// Tools held without a lever: the tip is the handle. Jaws are open or fully closed.
-ToolsNow tools_at(std::int64_t tick, const Motion& motion,
-                  const std::array<glm::dvec3, kTools>& tip_m, double tip_radius_m) {
-    ToolsNow now;
-    now.tick = tick;
-    for (int i = 0; i < kTools; ++i)
-        now.tip[i] = {tip_m[i], tip_radius_m};
-    if (motion.jaw_closes >= 0 && tick >= motion.jaw_closes && tick < motion.jaw_opens) {
-        const auto closed = static_cast<std::size_t>(motion.jaw_closes);
-        now.tip[0].grip = haptics::next_grip({}, {}, 1.0, motion.tip_m[closed][0]);
-    }
-    return now;
-}
-
 std::array<glm::dvec3, kTools> forces_of(const TissueRig& rig) {
     std::array<glm::dvec3, kTools> out;
     for (int i = 0; i < kTools; ++i)
@@ -39,6 +25,20 @@ struct Flight {
 };
 
 } // namespace
+
+// Tools held without a lever: the tip is the handle. Jaws are open or fully closed.
+ToolsNow tools_at(std::int64_t tick, const Motion& motion,
+                  const std::array<glm::dvec3, kTools>& tip_m, double tip_radius_m) {
+    ToolsNow now;
+    now.tick = tick;
+    for (int i = 0; i < kTools; ++i)
+        now.tip[i] = {tip_m[i], tip_radius_m};
+    if (motion.jaw_closes >= 0 && tick >= motion.jaw_closes && tick < motion.jaw_opens) {
+        const auto closed = static_cast<std::size_t>(motion.jaw_closes);
+        now.tip[0].grip = haptics::next_grip({}, {}, 1.0, motion.tip_m[closed][0]);
+    }
+    return now;
+}
 
 ForceTrack run_monolithic(const std::function<TissueRig(const TissueConfig&)>& make_rig,
                           const Motion& motion, double tip_radius_m, int substeps) {

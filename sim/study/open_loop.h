@@ -14,6 +14,10 @@ namespace sim {
 
 using ForceTrack = std::vector<std::array<glm::dvec3, kTools>>; // on the tools, by tick
 
+/// The tools at a tick of a motion, at tips `tip_m`.
+ToolsNow tools_at(std::int64_t tick, const Motion& motion,
+                  const std::array<glm::dvec3, kTools>& tip_m, double tip_radius_m);
+
 /// FEM in every tick (`substeps` 1) or more often, poses interpolated between ticks.
 ForceTrack run_monolithic(const std::function<TissueRig(const TissueConfig&)>& make_rig,
                           const Motion& motion, double tip_radius_m, int substeps);

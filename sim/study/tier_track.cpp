@@ -1,0 +1,64 @@
+// See the header.
+#include "sim/study/tier_track.h"
+
+#include <algorithm>
+#include <ctime>
+#include <memory>
+
+namespace sim {
+namespace {
+
+double cpu_ms() {
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+
+TierSample sample_of(const TissueRig& rig, const ToolsNow& tools, const TissueAnswer& answer) {
+    TierSample sample{};
+    for (int i = 0; i < kTools; ++i) {
+        const FemContact& contact = rig.contact[i];
+        sample.body[i] = contact.body;
+        sample.tip_m[i] = tools.tip[i].centre_m;
+        if (contact.body < 0)
+            continue;
+        sample.force_n[i] = contact.force_n;
+        sample.skin_m[i] = skin_under(rig, i);
+    }
+    sample.target_um = answer.seen.target_um;
+    return sample;
+}
+
+} // namespace
+
+TierTrack run_tier(const LoadedScene& scene, std::span<const TargetWish> targets,
+                   const Poses& poses, const ModelChoice& choice, double step_s) {
+    TissueConfig config;
+    config.step_s = step_s;
+    config.tier = choice;
+    TissueRig rig = make_tissue(scene, targets, config);
+    TierTrack track{.choice = choice};
+    track.targets = static_cast<int>(rig.targets.size());
+    for (const EmbeddedTarget& target : rig.targets)
+        track.target_body.push_back(target.body);
+    const auto answer = std::make_unique<TissueAnswer>();
+    std::vector<double> ms;
+    for (const ToolsNow& tools : poses) {
+        const double start_ms = cpu_ms();
+        const StepOutcome outcome = tissue_step(rig, tools, *answer);
+        ms.push_back(cpu_ms() - start_ms);
+        track.linear_residual = std::max(track.linear_residual, outcome.linear_residual);
+        track.residual = std::max(track.residual, outcome.residual);
+        track.inverted += outcome.inverted > 0;
+        track.step.push_back(sample_of(rig, tools, *answer));
+    }
+    for (const double t : ms)
+        track.mean_ms += t / static_cast<double>(ms.size());
+    if (!ms.empty()) {
+        std::sort(ms.begin(), ms.end());
+        track.p99_ms = ms[static_cast<std::size_t>(0.99 * static_cast<double>(ms.size() - 1))];
+    }
+    return track;
+}
+
+} // namespace sim
