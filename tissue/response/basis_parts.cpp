@@ -6,24 +6,25 @@
 
 namespace tissue {
 
-void load_columns(Dofs dofs, const ContactSurface& surface, const BasisContact& contact,
-                  const Columns& z, int first) noexcept {
-    const auto put = [&](const ContactPoint& at, const glm::dvec3& direction) {
+void load_centre(Dofs dofs, const ContactSurface& surface, const BasisContact& contact,
+                 const Columns& z, int first) noexcept {
+    const std::array<glm::dvec3, kCentreLoads> free{contact.normal, contact.tangent1,
+                                                    contact.tangent2},
+        held{contact.tangent1, contact.tangent2, contact.normal};
+    for (const glm::dvec3& direction : contact.held ? held : free) {
         const std::span<double> column = z.range(first++, 1);
         std::fill(column.begin(), column.end(), 0.0);
-        add_row(dofs, surface, at, direction, 1.0, column);
-    };
-    if (contact.held) {
-        put(contact.centre, contact.tangent1);
-        put(contact.centre, contact.tangent2);
-        put(contact.centre, contact.normal);
-        return;
+        add_row(dofs, surface, contact.centre, direction, 1.0, column);
     }
-    put(contact.centre, contact.normal);
-    put(contact.centre, contact.tangent1);
-    put(contact.centre, contact.tangent2);
-    for (const ContactPoint& star : contact.star)
-        put(star, contact.normal);
+}
+
+void load_star(Dofs dofs, const ContactSurface& surface, const BasisContact& contact,
+               const Columns& z, int first) noexcept {
+    for (const ContactPoint& star : contact.star) {
+        const std::span<double> column = z.range(first++, 1);
+        std::fill(column.begin(), column.end(), 0.0);
+        add_row(dofs, surface, star, contact.normal, 1.0, column);
+    }
 }
 
 void inner_products(const double* a, const double* b, std::size_t n, int columns,

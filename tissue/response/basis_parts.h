@@ -26,9 +26,13 @@ struct Columns {
     }
 };
 
-/// The loads of one contact's first moment in z, from column `first`.
-void load_columns(Dofs dofs, const ContactSurface& surface, const BasisContact& contact,
-                  const Columns& z, int first) noexcept;
+/// The loads of one contact's first moment in z, from column `first`: three at its centre, then,
+/// if it is not held, the star's.
+inline constexpr int kCentreLoads = 3, kStarLoads = 4;
+void load_centre(Dofs dofs, const ContactSurface& surface, const BasisContact& contact,
+                 const Columns& z, int first) noexcept;
+void load_star(Dofs dofs, const ContactSurface& surface, const BasisContact& contact,
+               const Columns& z, int first) noexcept;
 
 /// Lower triangle of a^T b, symmetric but for roundoff.
 void inner_products(const double* a, const double* b, std::size_t n, int columns,

@@ -113,7 +113,9 @@ int raw_columns(const CorotatedModel& model, const ContactSurface& surface,
         for (std::size_t c = 0; c < contacts.size(); ++c) {
             const int count = (contacts[c].held ? kHeldMoments : kFree)[moment];
             if (moment == 0)
-                load_columns(model.dof, surface, contacts[c], w.z, columns);
+                load_centre(model.dof, surface, contacts[c], w.z, columns);
+            if (moment == 0 && !contacts[c].held)
+                load_star(model.dof, surface, contacts[c], w.z, columns + kCentreLoads);
             for (int k = 0; moment > 0 && k < count; ++k)
                 next_moment(w, last[c] + k, columns + k);
             last[c] = columns;

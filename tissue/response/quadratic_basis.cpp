@@ -5,6 +5,7 @@
 // each column is multiplied by it. So columns x come from rough solves and are carried with m = M x
 //   V = X L^-T, L L^T = X^T M X;  V^T A V = of_m 1 + of_k V^T K V = U (of_m + of_k Lambda) U^T
 #include "tissue/response/basis_parts.h"
+#include "tissue/solver/quadratic_columns.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,13 +25,17 @@ Work split(ContactBasis& basis, std::size_t n) noexcept {
 }
 
 // x = A^-1 load, roughly, of unit M-norm. A load that moves nothing stays zero.
-void solve_columns(const QuadraticModel& model, const Work& w, int first, int count,
-                   QuadraticSystem& system) noexcept {
+void solve_loads(const QuadraticModel& model, const Work& w, int first, int count,
+                 QuadraticSystem& system) noexcept {
     constexpr QuadraticOptions kRough{.linear_tolerance = 3e-2, .max_linear = 3};
+    const std::span<double> all_x = w.x.range(first, count),
+                            all_mass = w.mass_x.range(first, count);
+    const std::span<const double> load = w.load.range(first, count);
+    std::copy(load.begin(), load.end(), all_x.begin());
+    solve_columns(model, kRough, system, all_x, count);
+    mass_products(model, all_x, count, system, all_mass);
     for (int j = first; j < first + count; ++j) {
         const std::span<double> x = w.x.range(j, 1), mass_x = w.mass_x.range(j, 1);
-        solve(model, kRough, w.load.range(j, 1), system, x);
-        mass_product(model, x, system, mass_x);
         double norm2 = 0.0;
         for (std::size_t i = 0; i < x.size(); ++i)
             norm2 += x[i] * mass_x[i];
@@ -42,24 +47,44 @@ void solve_columns(const QuadraticModel& model, const Work& w, int first, int co
     }
 }
 
+// Columns in the order: centres of all contacts, stars, then one moment after another. A round
+// solves what the next moment rests on; the stars, on which nothing does, fill up its sixteens.
 int raw_columns(const QuadraticModel& model, const ContactSurface& surface,
                 std::span<const BasisContact> contacts, QuadraticSystem& system, const Work& w,
                 std::array<int, kMoments>& blocks) noexcept {
     std::array<int, kMaxContacts> last{}; // first column of each contact, one moment before
     int columns = 0;
-    for (int moment = 0; moment < kMoments; ++moment) {
+    for (std::size_t c = 0; c < contacts.size(); ++c, columns += kCentreLoads) {
+        last[c] = columns;
+        load_centre(model.dof, surface, contacts[c], w.load, columns);
+    }
+    int needed = columns;
+    for (const BasisContact& contact : contacts) {
+        if (contact.held)
+            continue;
+        load_star(model.dof, surface, contact, w.load, columns);
+        columns += kStarLoads;
+    }
+    blocks[0] = columns;
+    int solved = 0;
+    for (int moment = 1;; ++moment) {
+        constexpr int kLanes = SingleFactor::kLanes;
+        const int whole = solved + (needed - solved + kLanes - 1) / kLanes * kLanes;
+        const int end = std::min(columns, whole);
+        solve_loads(model, w, solved, end - solved, system);
+        solved = end;
+        if (moment == kMoments)
+            break;
         const int first = columns;
         for (std::size_t c = 0; c < contacts.size(); ++c) {
             const int count = (contacts[c].held ? kHeldMoments : kFree)[moment];
-            if (moment == 0)
-                load_columns(model.dof, surface, contacts[c], w.load, columns);
-            for (int k = 0; moment > 0 && k < count; ++k)
+            for (int k = 0; k < count; ++k)
                 std::copy_n(w.mass_x[last[c] + k], w.x.n, w.load[columns + k]);
             last[c] = columns;
             columns += count;
         }
         blocks[moment] = columns - first;
-        solve_columns(model, w, first, columns - first, system);
+        needed = columns;
     }
     return columns;
 }
@@ -102,9 +127,8 @@ void compute_contact_basis(const QuadraticModel& model, const ContactSurface& su
     const int columns = raw_columns(model, surface, contacts, system, w, blocks);
     double* q = basis.shape.data();
     const int rank = orthonormalise(w, blocks, columns, q);
-    for (int j = 0; j < rank; ++j) {
-        stiffness_product(model, {q + static_cast<std::size_t>(j) * n, n}, system, w.x.range(j, 1));
-    }
+    stiffness_products(model, {q, static_cast<std::size_t>(rank) * n}, rank, system,
+                       w.x.range(0, rank));
     SmallMatrix turn;
     std::array<double, kSmall> value{};
     inner_products(q, w.x[0], n, rank, turn);

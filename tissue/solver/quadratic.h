@@ -39,7 +39,7 @@
 #include "tissue/material/hyperelastic.h"
 #include "tissue/mesh/elastic_bed.h"
 #include "tissue/mesh/quadratic_mesh.h"
-#include "tissue/solver/single_factor.h"
+#include "tissue/solver/block_scratch.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
@@ -134,6 +134,7 @@ struct QuadraticSystem {
     std::vector<SingleFactor::Line> lines{};
     SparseFactor exact; // of A at rest
     SingleFactor single{};
+    BlockScratch block{};
 };
 
 struct LinearReport {

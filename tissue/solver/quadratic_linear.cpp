@@ -57,6 +57,8 @@ void multiply(const QuadraticModel& model, QuadraticSystem& s) noexcept {
     clear_fixed(model, s.q);
 }
 
+} // namespace
+
 // Nothing of it left, A is positive: shear |dF|^2 + 2 mixed (F:dF)(C:dF) + square (C:dF)^2, where
 // mixed^2 = 4/9 shear^2/J^2 <= shear square/|F|^2, since square >= 5/9 shear |F|^2/J^2.
 void scale_geometric_stiffness(float share, QuadraticSystem& s) noexcept {
@@ -67,6 +69,8 @@ void scale_geometric_stiffness(float share, QuadraticSystem& s) noexcept {
         }
     }
 }
+
+namespace {
 
 struct Gradients {
     int iterations = 0;

@@ -3,6 +3,7 @@
 // where it lets the reference solver check the mesh and integrate mass and stiffness.
 #include "tissue/reference/reference.h"
 #include "tissue/reference/tet10.h"
+#include "tissue/solver/quadratic_columns.h"
 #include "tissue/solver/quadratic_linear.h"
 
 #include <algorithm>
@@ -208,6 +209,7 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s) {
     s.ordered.resize(static_cast<std::size_t>(model.unknowns));
     s.unknown.resize(2 * static_cast<std::size_t>(model.unknowns));
     s.lines.resize(static_cast<std::size_t>(s.single.most_lines));
+    s.block = make_block_scratch(model, s.single.order);
     return s;
 }
 

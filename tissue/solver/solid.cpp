@@ -2,6 +2,7 @@
 #include "tissue/solver/solid.h"
 
 #include "tissue/mesh/quadratic_mesh.h"
+#include "tissue/solver/quadratic_columns.h"
 #include "tissue/solver/stress.h"
 
 #include <algorithm>
@@ -86,14 +87,7 @@ double solve_block(CorotatedSolid& s, std::span<double> block, int columns) noex
 }
 
 double solve_block(QuadraticSolid& s, std::span<double> block, int columns) noexcept {
-    const auto n = static_cast<std::size_t>(s.model.unknowns);
-    double worst = 0.0;
-    for (int j = 0; j < columns; ++j) {
-        const std::span<double> column = block.subspan(static_cast<std::size_t>(j) * n, n);
-        const LinearReport report = solve(s.model, s.options, column, s.system, column);
-        worst = std::max(worst, report.relative_residual);
-    }
-    return worst;
+    return solve_columns(s.model, s.options, s.system, block, columns).relative_residual;
 }
 
 SolidReport end(CorotatedSolid& s, std::span<const double> load_n, double relinearise_m,

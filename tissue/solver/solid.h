@@ -85,8 +85,8 @@ struct SolidReport {
 /// pressed: then only what one linearisation says, which the contact is added to.
 SolidReport free_motion(Solid& solid, bool touched, std::span<double> du) noexcept;
 
-/// A x = b in place for `columns` right-hand sides, one after another. Returns the worst relative
-/// residual, 0 for a direct solve.
+/// A x = b in place for `columns` right-hand sides, stored one after another. Returns the worst
+/// relative residual, 0 for a direct solve.
 double solve(Solid& solid, std::span<double> block, int columns) noexcept;
 
 /// Moves by `du` and linearises there, or follows the tangent while nothing has drifted farther

@@ -1,0 +1,42 @@
+// tissue/solver/quadratic_columns.h
+// Many right-hand sides of a quadratic body at its last linearisation, sixteen side by side: the
+// rows of a contact and the basis of the local model need dozens in a step. Called by
+// tissue/solver/solid.cpp and tissue/response/quadratic_basis.cpp in the tissue loop.
+// Each column has conjugate gradients of its own with the preconditioner of quadratic_linear.cpp;
+// what is shared is reading: a number of the factor, or of a tet, meets sixteen columns at once.
+#pragma once
+
+#include "tissue/solver/quadratic.h"
+
+namespace tissue {
+
+/// At setup; `order`: unknown that is eliminated k-th.
+BlockScratch make_block_scratch(const QuadraticModel& model, std::span<const int> order);
+
+struct ColumnsReport {
+    int iterations = 0;             // of each group of sixteen, added up
+    double relative_residual = 0.0; // |A x - b| / |b|, the worst
+    bool projected = false;         // A was indefinite, see LinearReport
+};
+
+/// A X = B in place, `columns` columns on the unknowns, one after the other. A column stops at the
+/// tolerance, whatever the others do; its answer does not depend on them unless A is indefinite on
+/// one of them: then its group begins again without (half of) the geometric stiffness, as in
+/// solve(), and so do later groups. `residual`: of each column, or empty. A recovering body solves
+/// exactly. No allocation, here and below.
+ColumnsReport solve_columns(const QuadraticModel& model, const QuadraticOptions& options,
+                            QuadraticSystem& system, std::span<double> block, int columns,
+                            std::span<double> residual = {}) noexcept;
+
+/// X <- A0^-1 B, A0 what approximates A: the preconditioner of the solve alone.
+void precondition_columns(const QuadraticModel& model, QuadraticSystem& system,
+                          std::span<double> block, int columns) noexcept;
+
+/// Y = K X, K at the last linearisation, in single precision. A recovering body: as at rest.
+void stiffness_products(const QuadraticModel& model, std::span<const double> x, int columns,
+                        QuadraticSystem& system, std::span<double> y) noexcept;
+/// Y = M X, in double.
+void mass_products(const QuadraticModel& model, std::span<const double> x, int columns,
+                   QuadraticSystem& system, std::span<double> y) noexcept;
+
+} // namespace tissue
