@@ -76,6 +76,7 @@ nlohmann::ordered_json outcome_json(const Attempt::Outcome& outcome) {
               {"energy_min_j", r.energy_min_j},
               {"faults", r.faults}}},
             {"model", row.model},
+            {"model_why", row.model_why},
             {"coupling", row.coupling},
             {"hands", row.hands},
             {"fem_hz", row.fem_hz},

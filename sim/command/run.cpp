@@ -6,6 +6,7 @@
 #include "sim/io/files.h"
 #include "sim/io/guard.h"
 #include "sim/session/session.h"
+#include "sim/study/auto_model.h"
 #include "tasks/logbook/junit.h"
 
 #include <CLI/CLI.hpp>
@@ -75,9 +76,21 @@ Attempt::Outcome perform(const RunArguments& a, Session& session) {
                       : run_lockstep(session, log, id, asked_to_stop);
 }
 
+void choose_model(RunOptions& options) {
+    const AutoModel chosen = auto_model(options, model_memory(), [](const std::string& doing) {
+        fmt::print(stderr, "choosing the model: {}\n", doing);
+    });
+    options.model = chosen.model;
+    options.model_why = chosen.why;
+    fmt::print(stderr, "{}{}", chosen.why, chosen.remembered ? "(chosen before)\n" : "");
+}
+
 void run(const RunArguments& a, int& exit_code) {
     install_signal_guard();
-    const std::unique_ptr<Session> session = make_session(a.options);
+    RunOptions options = a.options;
+    if (options.model == "auto")
+        choose_model(options);
+    const std::unique_ptr<Session> session = make_session(options);
     const auto start = std::chrono::steady_clock::now();
     const Attempt::Outcome outcome = perform(a, *session);
     const double wall_s =
@@ -119,7 +132,8 @@ void add_run(CLI::App& app, int& exit_code) {
                   "expert, intermediate, novice, another named skill, or FILE.toml");
     c->add_option("--coupling", a->coupling, "anchored or hold");
     c->add_option("--model", a->options.model,
-                  "rigid, linear-compliance, corotated, quadratic; of one organ otherwise: "
+                  "auto: the cheapest that is accurate enough; or rigid, linear-compliance, "
+                  "corotated, quadratic; of one organ otherwise: "
                   "corotated,flap=quadratic");
     c->add_option("--fem-hz", a->options.fem_hz, "FEM steps a second; divides 1000");
     c->add_option("--seed", a->options.seed, "Of everything random in the hand");

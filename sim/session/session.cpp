@@ -193,6 +193,7 @@ tasks::AttemptRow attempt_row(const Session& session, bool realtime) {
     row.scene_text = session.scene.scene.text;
     row.scene_hash = session.scene.hash;
     row.model = session.options.model;
+    row.model_why = session.options.model_why;
     row.coupling = session.options.coupling == Coupling::hold ? "hold" : "anchored";
     row.hands = session.options.hands;
     row.seed = session.options.seed;

@@ -18,6 +18,7 @@ struct RunOptions {
     std::string hands = "expert";          // skill name or path of a script
     Coupling coupling = Coupling::anchored;
     std::string model{tissue::name_of(kUsualTier)}; // see sim/session/model_choice.h
+    std::string model_why;                          // of --model auto, for the logbook
     int fem_hz = 100;
     std::uint64_t seed = 1;
     double max_seconds = 0.0; // 0: the exercise's own limit

@@ -22,7 +22,7 @@ namespace {
 constexpr std::string_view kAttemptColumns =
     "id, session, trainee, exercise, exercise_text, scene_text, scene_hash, model, coupling, "
     "hands, seed, fem_hz, realtime, completed, valid, ended, forces_on, started_utc, log_sha256, "
-    "start_counts, rig";
+    "start_counts, rig, model_why";
 
 AttemptRow read_attempt(const Statement& row) {
     AttemptRow attempt;
@@ -46,6 +46,7 @@ AttemptRow read_attempt(const Statement& row) {
     attempt.start_counts =
         nlohmann::json::parse(row.text(column++)).get<decltype(attempt.start_counts)>();
     attempt.rig = parse_rig(row.text(column++));
+    attempt.model_why = row.text(column++);
     return attempt;
 }
 
@@ -99,8 +100,8 @@ std::int64_t Logbook::begin_attempt(const AttemptRow& attempt) {
     Statement insert(impl_->main,
                      "INSERT INTO attempt (session, trainee, exercise, exercise_text, scene_text, "
                      "scene_hash, model, coupling, hands, seed, fem_hz, realtime, forces_on, "
-                     "started_utc, start_counts) "
-                     "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                     "started_utc, start_counts, model_why) "
+                     "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
                      kAction);
     insert.arg(attempt.session);
     if (attempt.trainee.empty())
@@ -112,7 +113,7 @@ std::int64_t Logbook::begin_attempt(const AttemptRow& attempt) {
     insert.arg(attempt.model).arg(attempt.coupling).arg(attempt.hands);
     insert.arg(attempt.seed).arg(attempt.fem_hz);
     insert.arg(attempt.realtime).arg(attempt.forces_on).arg(attempt.started_utc);
-    insert.arg(nlohmann::json(attempt.start_counts).dump()).run();
+    insert.arg(nlohmann::json(attempt.start_counts).dump()).arg(attempt.model_why).run();
     return impl_->main.last_id();
 }
 

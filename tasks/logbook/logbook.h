@@ -38,6 +38,7 @@ struct AttemptRow {
     std::int64_t session = 0;
     std::string trainee; // uuid; empty: anonymous
     std::string exercise, exercise_text, scene_text, scene_hash, model, coupling, hands;
+    std::string model_why; // of a model chosen by the program: in plain words; not hashed
     std::uint64_t seed = 0;
     int fem_hz = 0;
     bool realtime = false, completed = false, valid = false, ended = false, forces_on = true;

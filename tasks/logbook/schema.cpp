@@ -66,11 +66,15 @@ CREATE TABLE note (
 CREATE INDEX note_by_attempt ON note (attempt);
 )sql";
 
+// Why `model` was taken, where the program chose it.
+constexpr const char* kLogbook2 =
+    "ALTER TABLE attempt ADD COLUMN model_why TEXT NOT NULL DEFAULT '';";
+
 constexpr const char* kNames1 = R"sql(
 CREATE TABLE trainee (id TEXT PRIMARY KEY NOT NULL, name TEXT NOT NULL UNIQUE) STRICT;
 )sql";
 
-constexpr Migration kLogbookSteps[] = {{1, kLogbook1}};
+constexpr Migration kLogbookSteps[] = {{1, kLogbook1}, {2, kLogbook2}};
 constexpr Migration kNamesSteps[] = {{1, kNames1}};
 
 constexpr std::int64_t kOursButUnset = 0;

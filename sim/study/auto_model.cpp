@@ -1,0 +1,74 @@
+// See the header.
+#include "sim/study/auto_model.h"
+
+#include "sim/io/files.h"
+#include "sim/study/why_study.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace sim {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string key_of(const RunOptions& options, const std::string& scene) {
+    const LoadedScene loaded = load_scene(scene);
+    const std::string exercise = read_text(find_exercise(loaded.place, options.exercise));
+    const std::string all =
+        fmt::format("{}\n{}\n{}\n{}", TROCAR_VERSION, loaded.hash, options.fem_hz, exercise);
+    return sha256_hex(std::as_bytes(std::span(all)));
+}
+
+// What was remembered before, or an empty object: memory that is damaged is begun anew.
+Json recall(const std::filesystem::path& memory, void (*say)(const std::string&)) {
+    if (!std::filesystem::exists(memory))
+        return Json::object();
+    try {
+        Json all = Json::parse(read_text(memory));
+        if (all.is_object())
+            return all;
+        say(fmt::format("{}: not an object of JSON; begun anew", memory.string()));
+    } catch (const std::exception& e) {
+        say(fmt::format("{}: begun anew: {}", memory.string(), e.what()));
+    }
+    return Json::object();
+}
+
+bool is_choice(const Json& all, const std::string& key) {
+    return all.contains(key) && all[key].is_object() && all[key].contains("model") &&
+           all[key]["model"].is_string() && all[key].contains("why") && all[key]["why"].is_string();
+}
+
+} // namespace
+
+AutoModel auto_model(const RunOptions& options, const std::filesystem::path& memory,
+                     void (*say)(const std::string&)) {
+    const std::string scene = options.scene.empty() ? scene_for(options.exercise) : options.scene;
+    const std::string key = key_of(options, scene);
+    Json all = recall(memory, say);
+    if (is_choice(all, key))
+        return {all[key]["model"], all[key]["why"], true};
+    WhyOptions why;
+    why.scene = scene;
+    why.exercise = {options.exercise};
+    why.fem_hz = options.fem_hz;
+    const WhyStudy study = run_why_study(why, say);
+    AutoModel made{study.model, why_words(study), false};
+    all[key] = {{"scene", study.scene},
+                {"exercise", options.exercise},
+                {"model", made.model},
+                {"why", made.why}};
+    try {
+        write_text(memory, all.dump(1));
+    } catch (const std::exception& e) {
+        say(fmt::format("{}: not remembered: {}", memory.string(), e.what()));
+    }
+    return made;
+}
+
+std::filesystem::path model_memory() {
+    return user_data_dir() / "models.json";
+}
+
+} // namespace sim
