@@ -5,6 +5,8 @@
 //   implicit Euler:  M (v' - v)/dt + C v' + f_int(x') = f, x' = x + dt v'
 //   midpoint:        M (v' - v)/dt + C (v + v')/2 + f_int((x + x')/2) = f, x' = x + dt (v + v')/2
 //   C = alpha M + beta K, K the tangent at the beginning of the step, as in corotated.h
+// With a Prony series f_int is that of prony.h: in a step, what it makes of the memory in dt; in
+// statics what is left of it after a long time, and all memory is relaxed then.
 // Total Lagrangian, displacements only, four quadrature points (Zienkiewicz & Taylor 2005), mass
 // consistent, so that on straight tetrahedra everything but neo-Hooke's energy is integrated
 // exactly. The root is found as a minimum of the (incremental) potential by Newton with a line
@@ -13,12 +15,12 @@
 // r(x(s)) = (1 - s) r(x_start), s from 0 to 1, halved and doubled as needed.
 //
 //   ReferenceModel   what never changes: mesh, law, masses, patterns
-//   ReferenceState   x and v of all nodes
+//   ReferenceState   x and v of all nodes, and what the points remember
 //   ReferenceSystem  K, f_int and the factor at a state; scratch, may be used again
 // World frame = rest frame. No function keeps or shares anything: one thread per state and system.
 #pragma once
 
-#include "tissue/material/hyperelastic.h"
+#include "tissue/material/prony.h"
 #include "tissue/mesh/quadratic_mesh.h"
 #include "tissue/solver/sparse_factor.h"
 
@@ -53,15 +55,17 @@ struct ReferenceModel {
 struct ReferenceState {
     std::vector<glm::dvec3> position_m;
     std::vector<glm::dvec3> velocity_mps;
+    std::vector<Symmetric> memory{}; // A of each term of point q of tet e, from (4 e + q) terms on
 };
 
 struct ReferenceSystem {
     std::vector<double> internal_n; // f_int per component, held ones too: there, the reactions
     std::vector<double> stiffness;  // K on ReferenceModel::all
-    double energy_j = 0.0;          // elastic
+    double energy_j = 0.0;          // elastic; with a memory that of M, see prony.h
     double min_det_f = 1.0;         // over the quadrature points
     std::vector<double> matrix;     // what was factored, on ReferenceModel::free
     SparseFactor factor;
+    std::vector<Symmetric> shear_pa{}; // M of point q of tet e at 4 e + q; empty: elastic
 };
 
 /// `held`: a flag byte per node, may be empty. Throws std::invalid_argument naming the tet, node or
@@ -116,15 +120,21 @@ NewtonReport step(const ReferenceModel& model, const ReferenceLoad& load, double
                   TimeRule rule, const NewtonOptions& options, ReferenceSystem& system,
                   ReferenceState& state);
 
-/// f_int, K, energy and min det F at `state`. `projected`: K from projected tangents.
+/// f_int, K, energy and min det F at `state`, at once. `projected`: K from projected tangents.
 void linearize(const ReferenceModel& model, const ReferenceState& state, ReferenceSystem& system,
                bool projected = false);
 
-/// Infinite if turned inside out under neo-Hooke.
+/// Infinite if turned inside out under neo-Hooke. Of a body that has rested, moved at once.
 double elastic_energy_j(const ReferenceModel& model, std::span<const glm::dvec3> position_m);
 
-/// With the sign of f_int, on every node: at equilibrium, load + reaction = elastic - weight.
+/// With the sign of f_int, on every node: at equilibrium, load + reaction = elastic - weight. Of a
+/// body that has rested, moved at once.
 void elastic_forces(const ReferenceModel& model, std::span<const glm::dvec3> position_m,
                     std::span<glm::dvec3> force_n);
+
+/// The same with what the points remember: the stress now, and the energy that could be had back.
+void internal_forces(const ReferenceModel& model, const ReferenceState& state,
+                     std::span<glm::dvec3> force_n);
+double stored_energy_j(const ReferenceModel& model, const ReferenceState& state);
 
 } // namespace tissue

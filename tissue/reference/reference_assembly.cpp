@@ -35,6 +35,12 @@ void add_tangent(const Tangent& A, const ReferencePoint& point,
     }
 }
 
+double density_jpm3(const ReferenceModel& model, std::span<const Symmetric> shear_pa,
+                    std::size_t tet, std::size_t q, const dmat3& F) noexcept {
+    return shear_pa.empty() ? energy_density_jpm3(model.elasticity, F)
+                            : energy_density_jpm3(model.elasticity, shear_pa[4 * tet + q], F);
+}
+
 } // namespace
 
 void linearize_at(const ReferenceModel& model, std::span<const dvec3> moved_m,
@@ -46,17 +52,20 @@ void linearize_at(const ReferenceModel& model, std::span<const dvec3> moved_m,
     for (std::size_t e = 0; e < model.points.size(); ++e) {
         std::array<dmat3, 55> blocks;
         blocks.fill(dmat3(0.0));
-        for (const ReferencePoint& point : model.points[e]) {
+        for (std::size_t q = 0; q < 4; ++q) {
+            const ReferencePoint& point = model.points[e][q];
             const dmat3 F = deformation_gradient(model, e, point, moved_m);
             system.min_det_f = std::min(system.min_det_f, glm::determinant(F));
-            system.energy_j += point.volume_m3 * energy_density_jpm3(model.elasticity, F);
-            const dmat3 P = point.volume_m3 * piola_stress_pa(model.elasticity, F);
+            system.energy_j += point.volume_m3 * density_jpm3(model, system.shear_pa, e, q, F);
+            const dmat3 P = point.volume_m3 * piola_at_pa(model, system.shear_pa, e, q, F);
             for (std::size_t a = 0; a < 10; ++a) {
                 const dvec3 force = P * point.gradient_1pm[a];
                 for (int k = 0; k < 3; ++k)
                     system.internal_n[3 * model.mesh.tets[e][a] + k] += force[k];
             }
-            Tangent A = piola_tangent_pa(model.elasticity, F);
+            Tangent A = system.shear_pa.empty()
+                            ? piola_tangent_pa(model.elasticity, F)
+                            : piola_tangent_pa(model.elasticity, system.shear_pa[4 * e + q], F);
             if (projected)
                 project_positive(A);
             add_tangent(A, point, blocks);
@@ -69,38 +78,21 @@ void linearize_at(const ReferenceModel& model, std::span<const dvec3> moved_m,
     }
 }
 
-double energy_at_j(const ReferenceModel& model, std::span<const dvec3> moved_m) noexcept {
+double energy_at_j(const ReferenceModel& model, std::span<const Symmetric> shear_pa,
+                   std::span<const dvec3> moved_m) noexcept {
     double sum = 0.0;
     for (std::size_t e = 0; e < model.points.size(); ++e) {
-        for (const ReferencePoint& point : model.points[e]) {
+        for (std::size_t q = 0; q < 4; ++q) {
+            const ReferencePoint& point = model.points[e][q];
             const dmat3 F = deformation_gradient(model, e, point, moved_m);
-            sum += point.volume_m3 * energy_density_jpm3(model.elasticity, F);
+            sum += point.volume_m3 * density_jpm3(model, shear_pa, e, q, F);
         }
     }
     return sum;
 }
 
-void linearize(const ReferenceModel& model, const ReferenceState& state, ReferenceSystem& system,
-               bool projected) {
-    linearize_at(model, displacements_m(model, state.position_m), system, projected);
-}
-
 double elastic_energy_j(const ReferenceModel& model, std::span<const dvec3> position_m) {
-    return energy_at_j(model, displacements_m(model, position_m));
-}
-
-void elastic_forces(const ReferenceModel& model, std::span<const dvec3> position_m,
-                    std::span<dvec3> force_n) {
-    const std::vector<dvec3> moved = displacements_m(model, position_m);
-    std::fill(force_n.begin(), force_n.end(), dvec3{0.0});
-    for (std::size_t e = 0; e < model.points.size(); ++e) {
-        for (const ReferencePoint& point : model.points[e]) {
-            const dmat3 F = deformation_gradient(model, e, point, moved);
-            const dmat3 P = point.volume_m3 * piola_stress_pa(model.elasticity, F);
-            for (std::size_t a = 0; a < 10; ++a)
-                force_n[model.mesh.tets[e][a]] += P * point.gradient_1pm[a];
-        }
-    }
+    return energy_at_j(model, {}, displacements_m(model, position_m));
 }
 
 } // namespace tissue

@@ -36,10 +36,30 @@ inline void add_block(const ReferenceModel& model, std::size_t tet, std::size_t 
     }
 }
 
-/// linearize() and elastic_energy_j() at displacements.
+/// linearize() and elastic_energy_j() at displacements, under M of each point (none: elastic).
 void linearize_at(const ReferenceModel& model, std::span<const glm::dvec3> moved_m,
                   ReferenceSystem& system, bool projected) noexcept;
-double energy_at_j(const ReferenceModel& model, std::span<const glm::dvec3> moved_m) noexcept;
+double energy_at_j(const ReferenceModel& model, std::span<const Symmetric> shear_pa,
+                   std::span<const glm::dvec3> moved_m) noexcept;
+
+/// P of point q of a tet under its M.
+inline glm::dmat3 piola_at_pa(const ReferenceModel& model, std::span<const Symmetric> shear_pa,
+                              std::size_t tet, std::size_t q, const glm::dmat3& F) noexcept {
+    return shear_pa.empty() ? piola_stress_pa(model.elasticity, F)
+                            : piola_stress_pa(model.elasticity, shear_pa[4 * tet + q], F);
+}
+
+/// ReferenceSystem::shear_pa for a step of dt_s from displacements `moved_m`. In
+/// reference_memory.cpp.
+void begin_memory(const ReferenceModel& model, const PronyStep& prony,
+                  std::span<const Symmetric> memory, std::span<const glm::dvec3> moved_m,
+                  ReferenceSystem& system);
+/// What is remembered after that step.
+void end_memory(const ReferenceModel& model, const PronyStep& prony,
+                std::span<const glm::dvec3> from_m, std::span<const glm::dvec3> to_m,
+                std::span<Symmetric> memory) noexcept;
+/// Throws std::invalid_argument if `memory` is not one of the model.
+void check_memory(const ReferenceModel& model, std::span<const Symmetric> memory);
 
 /// x - rest
 inline std::vector<glm::dvec3> displacements_m(const ReferenceModel& model,

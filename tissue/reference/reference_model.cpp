@@ -176,6 +176,7 @@ ReferenceModel make_reference(const QuadraticMesh& mesh, const Material& materia
     m.mesh = mesh;
     m.material = material;
     m.elasticity = elasticity(material, law);
+    prony_step(material, 0.0); // checks the terms
     m.gravity_mps2 = gravity_mps2;
     check_nodes(mesh);
     add_points(m);
@@ -186,7 +187,8 @@ ReferenceModel make_reference(const QuadraticMesh& mesh, const Material& materia
 }
 
 ReferenceState rest_state(const ReferenceModel& model) {
-    return {model.mesh.rest_m, std::vector<dvec3>(model.mesh.rest_m.size(), dvec3{0.0})};
+    return {model.mesh.rest_m, std::vector<dvec3>(model.mesh.rest_m.size(), dvec3{0.0}),
+            std::vector<Symmetric>(4 * model.points.size() * model.material.prony.size(), kUnit)};
 }
 
 ReferenceSystem make_system(const ReferenceModel& model) {

@@ -72,7 +72,7 @@ struct Value {
 Value potential_at(Search& s, std::span<const dvec3> x) noexcept {
     constexpr double kSummed = 1e-13; // of each of the three parts
     constexpr double kPoint = 1e-15;  // of mu: neo-Hooke's energy is a difference of such numbers
-    const double elastic_j = energy_at_j(s.model, x);
+    const double elastic_j = energy_at_j(s.model, s.system.shear_pa, x);
     measure(s, x);
     const double kinetic_j = 0.5 * product_of(s.way_m, s.inertia_n);
     const double work_j = product_of(s.force_n, s.way_m);
@@ -177,7 +177,7 @@ bool carry_held(Search& s, std::span<const dvec3> held_m) {
         s.step_m[i] += way_m[i];
     look_at(s, 1.0);
     std::swap(s.now_m, s.trial_m);
-    return std::isfinite(energy_at_j(s.model, s.now_m));
+    return std::isfinite(energy_at_j(s.model, s.system.shear_pa, s.now_m));
 }
 
 // True at an equilibrium: to the tolerance, or to rounding where the tolerance lies below it.

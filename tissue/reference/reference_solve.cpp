@@ -4,6 +4,7 @@
 
 #include "tissue/reference/reference_element.h"
 
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -31,11 +32,12 @@ std::vector<double> total_load_n(const ReferenceModel& model, const ReferenceLoa
 
 // B = M/h^2 + (alpha M + beta K)/h, and M v/h on top of the load.
 std::vector<double> add_inertia(const ReferenceModel& model, const ReferenceState& state,
-                                double h_s, ReferenceSystem& system, std::vector<double>& force_n) {
+                                std::span<const dvec3> moved_m, double h_s, ReferenceSystem& system,
+                                std::vector<double>& force_n) {
     const double mass = 1.0 / (h_s * h_s) + model.material.damping_mass_1ps / h_s;
     const double stiffness = model.material.damping_stiffness_s / h_s;
     if (stiffness > 0.0)
-        linearize(model, state, system);
+        linearize_at(model, moved_m, system, false);
     std::vector<double> inertia_npm(model.mass_kg.size());
     for (std::size_t k = 0; k < inertia_npm.size(); ++k) {
         inertia_npm[k] = mass * model.mass_kg[k];
@@ -59,8 +61,12 @@ NewtonReport solve_static(const ReferenceModel& model, const ReferenceLoad& load
     const std::vector<double> force_n = total_load_n(model, load);
     state.velocity_mps.assign(state.position_m.size(), dvec3{0.0});
     std::vector<dvec3> moved = displacements_m(model, state.position_m);
+    const PronyStep prony = prony_step(model.material, std::numeric_limits<double>::infinity());
+    check_memory(model, state.memory);
+    begin_memory(model, prony, state.memory, moved, system);
     const NewtonReport report = find_least(
         model, {force_n, {}}, displacements_m(model, load.held_m), options, system, moved);
+    end_memory(model, prony, moved, moved, state.memory);
     for (std::size_t i = 0; i < moved.size(); ++i)
         state.position_m[i] = model.mesh.rest_m[i] + moved[i];
     return report;
@@ -76,8 +82,11 @@ NewtonReport step(const ReferenceModel& model, const ReferenceLoad& load, double
     const bool half = rule == TimeRule::midpoint;
     const double h_s = half ? 0.5 * dt_s : dt_s;
     std::vector<double> force_n = total_load_n(model, load);
-    const std::vector<double> inertia_npm = add_inertia(model, state, h_s, system, force_n);
     const std::vector<dvec3> start = displacements_m(model, state.position_m);
+    const PronyStep prony = prony_step(model.material, h_s);
+    check_memory(model, state.memory);
+    begin_memory(model, prony, state.memory, start, system);
+    const std::vector<double> inertia_npm = add_inertia(model, state, start, h_s, system, force_n);
     std::vector<dvec3> held = displacements_m(model, load.held_m), moved = start;
     for (std::size_t i = 0; half && i < held.size(); ++i)
         held[i] = 0.5 * (start[i] + held[i]);
@@ -92,6 +101,9 @@ NewtonReport step(const ReferenceModel& model, const ReferenceLoad& load, double
         dvec3& v = state.velocity_mps[i];
         v = half ? 2.0 * way / h_s - v : way / h_s;
     }
+    end_memory(model, prony, start, moved, state.memory);
+    if (half)
+        end_memory(model, prony, moved, displacements_m(model, state.position_m), state.memory);
     return report;
 }
 

@@ -69,7 +69,7 @@ struct StepReport {
     int inverted = 0;
 };
 
-/// Throws std::invalid_argument naming the tet or the value.
+/// Throws std::invalid_argument naming the tet or the value; also for a Prony series.
 CorotatedModel make_corotated(const TetMesh& mesh, const Material& material,
                               std::span<const std::uint8_t> anchored,
                               const glm::dvec3& gravity_mps2 = glm::dvec3{0.0},

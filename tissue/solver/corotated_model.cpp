@@ -125,6 +125,10 @@ CorotatedModel make_corotated(const TetMesh& mesh, const Material& material,
         throw std::invalid_argument("anchors for " + std::to_string(anchored.size()) +
                                     " nodes: the mesh has " + std::to_string(mesh.rest_m.size()));
     }
+    if (!material.prony.empty()) {
+        throw std::invalid_argument("prony has " + std::to_string(material.prony.size()) +
+                                    " terms: corotated tissue has no memory, quadratic tissue has");
+    }
     CorotatedModel m;
     m.mesh = mesh;
     m.material = material;
