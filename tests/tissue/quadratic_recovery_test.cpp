@@ -83,7 +83,8 @@ TEST_CASE("without its geometric stiffness the tangent is positive, however defo
             for (int c = 0; c < 3; ++c)
                 moved[4 * i + c] = u[c];
         }
-        const auto sums = stresses(model, moved, system.internal_n, system.tangent, system.stretch);
+        const auto sums =
+            stresses(model, moved, {}, system.internal_n, system.tangent, system.stretch);
         if (!(sums.min_det_f > 0.0))
             continue;
         ++seen;
@@ -107,7 +108,7 @@ TEST_CASE("without its geometric stiffness the tangent is positive, however defo
         };
         for (unsigned way = 0; way < 100; ++way)
             indefinite += curvature(way) < 0.0;
-        for (auto& tangent : system.tangent) {
+        for (auto& tangent : system.tangent.elastic) {
             for (auto& point : tangent.point)
                 point[tissue::QuadraticTangent::kBend].fill(0.0f);
         }

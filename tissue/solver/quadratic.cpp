@@ -62,7 +62,8 @@ void add_inertia(const QuadraticModel& model, QuadraticSystem& s) noexcept {
 
 // Everything that depends on moved_m.
 void evaluate(const QuadraticModel& model, QuadraticSystem& s) noexcept {
-    const PointSums sums = stresses(model, s.moved_m, s.internal_n, s.tangent, s.stretch);
+    const PointSums sums =
+        stresses(model, s.moved_m, s.shear_pa, s.internal_n, s.tangent, s.stretch);
     s.min_det_f = sums.min_det_f;
     s.energy_j = sums.min_det_f > 0.0 ? sums.energy_j : kInfinity;
     const double bed_j = add_bed(model, s.moved_m, s.inertia_n, s.internal_n);
@@ -131,10 +132,10 @@ void add_momentum(const QuadraticModel& model, const QuadraticState& state,
 // in far fewer iterations if the stress of the geometric stiffness is not taken from it (Magisano,
 // Leonetti & Garcea 2017).
 void keep_stress(QuadraticSystem& s) noexcept {
-    for (std::size_t g = 0; g < s.tangent.size(); ++g) {
+    for (std::size_t g = 0; g < s.tangent.elastic.size(); ++g) {
         for (std::size_t q = 0; q < 4; ++q) {
-            s.tangent[g].point[q][QuadraticTangent::kBend] =
-                s.tangent_at_start[g].point[q][QuadraticTangent::kBend];
+            s.tangent.elastic[g].point[q][QuadraticTangent::kBend] =
+                s.tangent_at_start.elastic[g].point[q][QuadraticTangent::kBend];
         }
     }
 }
@@ -201,7 +202,9 @@ void linearize(const QuadraticModel& model, const QuadraticState& state,
     }
     s.moved_m = s.start_m;
     add_momentum(model, state, s);
-    const PointSums start = stresses(model, s.start_m, s.internal_n, s.tangent_at_start, s.stretch);
+    begin_memory(model, state, s);
+    const PointSums start =
+        stresses(model, s.start_m, s.shear_pa, s.internal_n, s.tangent_at_start, s.stretch);
     const double bed_j = add_bed(model, s.start_m, s.inertia_n, s.internal_n);
     s.min_det_f = start.min_det_f;
     s.energy_j = start.energy_j + bed_j;
@@ -290,6 +293,7 @@ void advance(const QuadraticModel& model, const QuadraticSystem& system, std::sp
         state.gain_mps[i] = step / system.dt_s - state.velocity_mps[i];
         state.velocity_mps[i] = step / system.dt_s;
     }
+    end_memory(model, system, state);
 }
 
 } // namespace tissue

@@ -2,6 +2,7 @@
 // Ten-node tetrahedra, neo-Hooke, implicit Euler in real time: the tier that does not lock.
 // Discretisation and energy are those of tissue/reference, mass consistent; tissue loop.
 //   M (v' - v)/dt + C v' + f_int(x') = f, x' = x + dt v', C = alpha M + beta K(x)
+// With a Prony series f_int is what prony.h makes of the memory in dt: a tensor for mu, no more.
 // Newton, each iteration by conjugate gradients (PCG) on the exact tangent, which is never
 // assembled. Iterations of PCG per step, mean and most, for a falling beam of 240 tets, 525 nodes,
 // 200 steps of 10 ms, each solve to 1e-3, Newton to 1e-3 (tissue_quadratic_bench):
@@ -30,7 +31,7 @@
 // at run time. SSE costs half as much again; the tests were run with each of them.
 //
 //   QuadraticModel   what never changes: mesh, masses, sixteen tets side by side
-//   QuadraticState   x, v and how v changed last: all that a snapshot needs
+//   QuadraticState   x, v, how v changed last, what is remembered: all that a snapshot needs
 //   QuadraticSystem  residual, tangent and preconditioner for one dt, made at a state; scratch
 // The pieces of a step are separate so that sim/ can put the contact solve between them:
 // linearize, solve for any right-hand sides, advance.
@@ -38,6 +39,7 @@
 
 #include "tissue/material/hyperelastic.h"
 #include "tissue/mesh/elastic_bed.h"
+#include "tissue/material/prony.h"
 #include "tissue/mesh/quadratic_mesh.h"
 #include "tissue/solver/block_scratch.h"
 
@@ -63,6 +65,22 @@ struct alignas(64) QuadraticGroup {
 struct alignas(64) QuadraticTangent {
     enum : int { kF = 0, kC = 9, kShear = 18, kMixed, kSquare, kBend, kCount };
     std::array<std::array<QuadraticGroup::Lanes<float>, kCount>, 4> point;
+};
+
+/// A symmetric tensor at the points of a group, as in Symmetric.
+struct alignas(64) QuadraticSymmetric {
+    std::array<std::array<QuadraticGroup::Lanes<double>, 6>, 4> point;
+};
+
+/// What a memory adds to the tangent, see prony.h: F M, 3 column + row, and M.
+struct alignas(64) QuadraticShear {
+    enum : int { kFM = 0, kM = 9, kCount = 15 };
+    std::array<std::array<QuadraticGroup::Lanes<float>, kCount>, 4> point;
+};
+
+struct QuadraticTangents {
+    std::vector<QuadraticTangent> elastic{};
+    std::vector<QuadraticShear> shear{}; // empty without a memory
 };
 
 /// Mean deformation gradient of the tets of a group, times their volume: 3 column + row.
@@ -94,12 +112,15 @@ struct QuadraticModel {
     // at rest, on the pattern of the unknowns
     SparsePattern pattern;
     std::vector<double> rest_stiffness_npm, rest_mass_kg;
+    std::vector<double> rest_shear_npm; // of this, what mu makes; empty without a memory
 };
 
 struct QuadraticState {
     std::vector<glm::dvec3> position_m;
     std::vector<glm::dvec3> velocity_mps;
     std::vector<glm::dvec3> gain_mps; // of velocity in the last step: the next one looks there
+    // of each group A of each term, then B^-1 at the end of the last step; empty without a memory
+    std::vector<QuadraticSymmetric> memory{};
 };
 
 struct QuadraticOptions {
@@ -114,12 +135,12 @@ struct QuadraticSystem {
     double dt_s = 0.0;
     bool recovering = false;  // A is that of the rest shape, turned as a whole
     glm::dmat3 turned{1.0};   // if it recovers: so far
-    double energy_j = 0.0;    // elastic
+    double energy_j = 0.0;    // elastic; with a memory that of M, see prony.h
     double shape_j = 0.0;     // of this, what is not of the change of volume
     double potential_j = 0.0; // incremental: its minimum is the step
     double min_det_f = 1.0;   // over the points
     double residual = 0.0;    // relative, see QuadraticReport
-    std::vector<QuadraticTangent> tangent{}, tangent_at_start{};
+    QuadraticTangents tangent{}, tangent_at_start{};
     std::vector<QuadraticStretch> stretch{};
     std::vector<glm::mat3> warp{}; // of each node: mean F around it, of volume 1
     NodeVector<double> start_m{}, moved_m{}, trial_m{}; // displacements from rest
@@ -135,6 +156,9 @@ struct QuadraticSystem {
     SparseFactor exact; // of A at rest
     SingleFactor single{};
     BlockScratch block{};
+    std::vector<double> rest_stiffness_npm{}; // K at rest, in a step of dt
+    PronyStep prony{};
+    std::vector<QuadraticSymmetric> shear_pa{}; // M; empty without a memory
 };
 
 struct LinearReport {
@@ -162,7 +186,8 @@ QuadraticModel make_quadratic(const QuadraticMesh& mesh, const Material& materia
                               std::span<const BedSample> bed = {});
 QuadraticState rest_state(const QuadraticModel& model);
 
-/// For steps of dt_s, finite and > 0. Throws std::invalid_argument naming the value.
+/// For steps of dt_s, finite and > 0, of states of this model. Throws std::invalid_argument naming
+/// the value.
 QuadraticSystem make_system(const QuadraticModel& model, double dt_s);
 
 /// Residual and tangent where v + gain leads in dt, or v, or at `state` itself: the first that is

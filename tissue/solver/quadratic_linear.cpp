@@ -60,9 +60,10 @@ void multiply(const QuadraticModel& model, QuadraticSystem& s) noexcept {
 } // namespace
 
 // Nothing of it left, A is positive: shear |dF|^2 + 2 mixed (F:dF)(C:dF) + square (C:dF)^2, where
-// mixed^2 = 4/9 shear^2/J^2 <= shear square/|F|^2, since square >= 5/9 shear |F|^2/J^2.
+// mixed^2 = 4/9 shear^2/J^2 <= shear square/|F|^2, since square >= 5/9 shear |F|^2/J^2. With a
+// memory the same in the metric of M, which is positive.
 void scale_geometric_stiffness(float share, QuadraticSystem& s) noexcept {
-    for (QuadraticTangent& tangent : s.tangent) {
+    for (QuadraticTangent& tangent : s.tangent.elastic) {
         for (auto& point : tangent.point) {
             for (float& bend : point[QuadraticTangent::kBend])
                 bend *= share;
@@ -153,7 +154,7 @@ LinearReport solve(const QuadraticModel& model, const QuadraticOptions& options,
 void stiffness_product(const QuadraticModel& model, std::span<const double> x, QuadraticSystem& s,
                        std::span<double> y) noexcept {
     if (s.recovering) {
-        multiply(model.pattern, model.rest_stiffness_npm, x, y);
+        multiply(model.pattern, s.rest_stiffness_npm, x, y);
         return;
     }
     std::fill(s.p.begin(), s.p.end(), 0.0f);

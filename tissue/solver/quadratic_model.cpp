@@ -141,8 +141,7 @@ QuadraticModel make_quadratic(const QuadraticMesh& mesh, const Material& materia
     std::vector<std::uint8_t> held(anchored.begin(), anchored.end());
     for (std::uint8_t& flag : held)
         flag = flag != 0 ? kHeld : 0;
-    const ReferenceModel reference =
-        make_reference(mesh, material, Law::neo_hooke, held, gravity_mps2);
+    ReferenceModel reference = make_reference(mesh, material, Law::neo_hooke, held, gravity_mps2);
     QuadraticModel m;
     m.mesh = mesh;
     m.material = material;
@@ -166,12 +165,26 @@ QuadraticModel make_quadratic(const QuadraticMesh& mesh, const Material& materia
     }
     if (!bed.empty())
         hold(bed, m);
+    if (material.prony.empty())
+        return m;
+    reference.elasticity.bulk_pa = 0.0;
+    linearize(reference, rest_state(reference), system);
+    for (const std::int32_t k : reference.free_source)
+        m.rest_shear_npm.push_back(system.stiffness[k]);
     return m;
 }
 
 QuadraticState rest_state(const QuadraticModel& model) {
     const std::vector<dvec3> none(model.mesh.rest_m.size(), dvec3{0.0});
-    return {model.mesh.rest_m, none, none};
+    const std::size_t terms = model.material.prony.size();
+    QuadraticSymmetric unit{};
+    for (auto& point : unit.point) {
+        for (std::size_t k = 0; k < point.size(); ++k)
+            point[k].fill(kUnit[k]);
+    }
+    return {
+        model.mesh.rest_m, none, none,
+        std::vector<QuadraticSymmetric>(terms > 0 ? model.groups.size() * (terms + 1) : 0, unit)};
 }
 
 QuadraticSystem make_system(const QuadraticModel& model, double dt_s) {
@@ -181,9 +194,15 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s) {
     QuadraticSystem s{.dt_s = dt_s, .exact = SparseFactor(model.pattern)};
     const double mass = 1.0 / (dt_s * dt_s) + model.material.damping_mass_1ps / dt_s;
     const double stiffness = 1.0 + model.material.damping_stiffness_s / dt_s;
+    s.prony = prony_step(model.material, dt_s);
+    s.rest_stiffness_npm = model.rest_stiffness_npm;
+    for (std::size_t k = 0; k < model.rest_shear_npm.size(); ++k) {
+        s.rest_stiffness_npm[k] -=
+            (1.0 - s.prony.mu_pa / model.elasticity.mu_pa) * model.rest_shear_npm[k];
+    }
     std::vector<double> matrix(model.rest_mass_kg.size());
     for (std::size_t k = 0; k < matrix.size(); ++k)
-        matrix[k] = mass * model.rest_mass_kg[k] + stiffness * model.rest_stiffness_npm[k];
+        matrix[k] = mass * model.rest_mass_kg[k] + stiffness * s.rest_stiffness_npm[k];
     if (!s.exact.factor(matrix))
         throw std::invalid_argument("the stiffness at rest is not positive definite: young_pa = " +
                                     std::to_string(model.material.young_pa));
@@ -197,8 +216,12 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s) {
         s.place_in_order.push_back(model.place_of_unknown[k]);
 
     const std::size_t nodes = model.mesh.rest_m.size(), places = model.weight_n.size();
-    s.tangent.resize(model.groups.size());
-    s.tangent_at_start.resize(model.groups.size());
+    const std::size_t remembering = s.prony.terms > 0 ? model.groups.size() : 0;
+    for (QuadraticTangents* t : {&s.tangent, &s.tangent_at_start}) {
+        t->elastic.resize(model.groups.size());
+        t->shear.resize(remembering);
+    }
+    s.shear_pa.resize(remembering);
     s.stretch.resize(model.groups.size());
     s.warp.assign(nodes, glm::mat3(1.0f));
     for (auto* v : {&s.start_m, &s.moved_m, &s.trial_m, &s.momentum_n, &s.internal_n, &s.inertia_n,

@@ -58,7 +58,7 @@ void linearize_recovering(const QuadraticModel& model, QuadraticSystem& s) noexc
         for (int c = 0; c < 3; ++c)
             strained[model.dof[i] + c] = u[c];
     }
-    multiply(model.pattern, model.rest_stiffness_npm, strained, force);
+    multiply(model.pattern, s.rest_stiffness_npm, strained, force);
     std::fill(s.way.begin(), s.way.end(), 0.0);
     std::fill(s.residual_n.begin(), s.residual_n.end(), 0.0);
     for (std::size_t i = 0; i < model.dof.size(); ++i) {
