@@ -44,8 +44,8 @@ PeerOutput run_peer_program(const std::filesystem::path& program,
                             const std::vector<std::string>& arguments) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(program, error))
-        return {"", fmt::format("{} is not there: its library was missing when this was built, or "
-                                "the target was not built",
+        return {"", fmt::format("{} is not there: its library was missing when this was built, "
+                                "the target was not built, or its setup in tests/bench not run",
                                 program.string())};
     std::array<int, 2> ends{};
     if (pipe(ends.data()) != 0)
