@@ -121,5 +121,5 @@ TEST_CASE("god-object: what is not finite gives no force and changes nothing els
     b.lead(step_god_object, {std::numeric_limits<double>::quiet_NaN(), 0, -1e-3});
     CHECK(b.state.force_n == dvec3{0.0});
     CHECK(b.state.proxy_m == kept_m);
-    CHECK(b.lead(step_god_object, {0, 0, -1e-3}).force_n.z == doctest::Approx(0.5));
+    CHECK(b.lead(step_god_object, {0, 0, -1e-3}).force_n.z == doctest::Approx(0.5).scale(0.0));
 }

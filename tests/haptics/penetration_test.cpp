@@ -54,7 +54,7 @@ TEST_CASE("penetration: within 1 % of brute-force Minkowski on 1000 random conve
             haptics::to_world(pair.b_in_a, pair.b.centre_m) - pair.a.centre_m);
         CHECK(found.depth_m >= exact_m * (1.0 - 1e-6));
         CHECK(support_distance(pair.a, pair.b, pair.b_in_a, found.normal) ==
-              doctest::Approx(found.depth_m).epsilon(1e-6));
+              doctest::Approx(found.depth_m).scale(0.0).epsilon(1e-6));
         worst = std::max(worst, found.depth_m / exact_m - 1.0);
         worst_single = std::max(worst_single, single.depth_m / exact_m - 1.0);
         high += found.depth_m > 1.01 * exact_m;
@@ -78,7 +78,7 @@ TEST_CASE("penetration: metres, millimetres and 1000 m from the origin give the 
         const Pair away = overlapping(far, 1.0, {1000, 1000, -1000});
         const double depth_m = haptics::penetration(plain.a, plain.b, plain.b_in_a).depth_m;
         CHECK(haptics::penetration(in_mm.a, in_mm.b, in_mm.b_in_a).depth_m ==
-              doctest::Approx(1e3 * depth_m).epsilon(1e-9));
+              doctest::Approx(1e3 * depth_m).scale(0.0).epsilon(1e-9));
         CHECK(std::abs(haptics::penetration(away.a, away.b, away.b_in_a).depth_m - depth_m) <
               1e-11);
     }
@@ -95,15 +95,15 @@ TEST_CASE("penetration: a walk from the side of entry stays there, the default c
         const RigidPose pose{turn({1, 0, 0}, 0.01), {0, 0, 1.1e-2 - through_m}};
         const Penetration coherent = haptics::walk_penetration(plate, rod, pose, {0.1, 0.1, 1});
         CHECK(coherent.normal.z > 0.99);
-        CHECK(coherent.depth_m == doctest::Approx(through_m).epsilon(0.1));
+        CHECK(coherent.depth_m == doctest::Approx(through_m).scale(0.0).epsilon(0.1));
     }
     const ConvexHull cube = box(dvec3{0.2e-3});
     const RigidPose inside{glm::dmat3(1.0), {0, 0, -0.2e-3}}; // nearer to the far side
     CHECK(haptics::walk_penetration(plate, cube, inside, {0, 0, 1}).depth_m ==
-          doctest::Approx(1.4e-3));
+          doctest::Approx(1.4e-3).scale(0.0));
     const Penetration out = haptics::penetration(plate, cube, inside);
-    CHECK(out.depth_m == doctest::Approx(1.0e-3));
-    CHECK(out.normal.z == doctest::Approx(-1.0));
+    CHECK(out.depth_m == doctest::Approx(1.0e-3).scale(0.0));
+    CHECK(out.normal.z == doctest::Approx(-1.0).scale(0.0));
 }
 
 TEST_CASE("penetration: boxes face to face and all alike, where every tie is exact") {
@@ -113,11 +113,11 @@ TEST_CASE("penetration: boxes face to face and all alike, where every tie is exa
         for (const dvec3 start : {dvec3{1, 0, 0}, dvec3{0, 1, 0}, dvec3{-1, -1, -1}}) {
             const Penetration out =
                 haptics::walk_penetration(cube, cube, {.position_m = at_m}, start);
-            CHECK(out.depth_m == doctest::Approx(1e-3));
+            CHECK(out.depth_m == doctest::Approx(1e-3).scale(0.0));
             CHECK(glm::dot(out.normal, at_m) > 0.0);
         }
     }
-    CHECK(haptics::penetration(cube, cube, {}).depth_m == doctest::Approx(2e-2));
+    CHECK(haptics::penetration(cube, cube, {}).depth_m == doctest::Approx(2e-2).scale(0.0));
 }
 
 TEST_CASE("penetration: never comes out through a face inside the solid") {

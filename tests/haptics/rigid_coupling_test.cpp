@@ -2,6 +2,7 @@
 
 #include "tests/haptics/sampled_face.h"
 
+#include <cmath>
 #include <doctest/doctest.h>
 #include <limits>
 
@@ -38,16 +39,41 @@ CoupledTool settled(const RigidPose& device, const CouplingSpring& spring, int t
 } // namespace
 
 TEST_CASE("rigid coupling: pressed on a plane the springs are in series, in push and in tilt") {
-    const double press_m = 1e-3, tilt_rad = 5e-3;
+    const double press_m = 1e-3;
     const CoupledTool flat = settled({glm::dmat3(1.0), {0, 0, -press_m}}, kSpring);
     const double series_npm =
         kSpring.stiffness_npm * kContact_npm / (kSpring.stiffness_npm + kContact_npm);
-    CHECK(flat.wrench.force_n.z == doctest::Approx(series_npm * press_m).epsilon(1e-9));
+    CHECK(flat.wrench.force_n.z == doctest::Approx(series_npm * press_m).scale(0.0).epsilon(1e-9));
     CHECK(glm::length(flat.wrench.torque_nm) < 1e-12);
+    const double tilt_rad = 1e-5; // further over a face pushes back more, see below
     const CoupledTool tilted = settled({turn({0, 1, 0}, tilt_rad), {0, 0, -press_m}}, kSpring);
     const double face = kContact_npm * kSide_m * kSide_m / 12.0;
     const double series = kSpring.torsion_nmprad * face / (kSpring.torsion_nmprad + face);
-    CHECK(tilted.wrench.torque_nm.y == doctest::Approx(-series * tilt_rad).epsilon(0.01));
+    CHECK(tilted.wrench.torque_nm.y ==
+          doctest::Approx(-series * tilt_rad).scale(0.0).epsilon(1e-6));
+}
+
+TEST_CASE("rigid coupling: a face that leans far lies where the law's own integrals balance") {
+    // theta is the tool's, d the depth of the face's middle, m = side^2/12: depth is linear, so
+    //   D = d + sin^2(theta) m/d, and k D acts at P = sin(theta) cos(theta) m/d
+    // as long as all of the face is in contact. Balance, relaxed to rounding:
+    const double press_m = 1e-3, m = kSide_m * kSide_m / 12.0, face = kContact_npm * m;
+    for (const double tilt_rad : {2e-3, 5e-3, 1e-2}) {
+        double d_m = press_m, theta = 0.0, force_n = 0.0, torque_nm = 0.0;
+        for (int i = 0; i < 2000; ++i) {
+            const double s = std::sin(theta), c = std::cos(theta);
+            force_n = kContact_npm * (d_m + s * s * m / d_m);
+            torque_nm = force_n * s * c * m / d_m;
+            d_m += 0.1 * (kSpring.stiffness_npm * (press_m - d_m) - force_n) /
+                   (kSpring.stiffness_npm + kContact_npm);
+            theta += 0.1 * (kSpring.torsion_nmprad * (tilt_rad - theta) - torque_nm) /
+                     (kSpring.torsion_nmprad + face);
+        }
+        REQUIRE(d_m > 0.5 * kSide_m * std::sin(theta));
+        const CoupledTool at = settled({turn({0, 1, 0}, tilt_rad), {0, 0, -press_m}}, kSpring);
+        CHECK(at.wrench.force_n.z == doctest::Approx(force_n).scale(0.0).epsilon(1e-9));
+        CHECK(at.wrench.torque_nm.y == doctest::Approx(-torque_nm).scale(0.0).epsilon(1e-9));
+    }
 }
 
 TEST_CASE("rigid coupling: the stiffness it says the device feels is the one it feels") {
@@ -74,21 +100,22 @@ TEST_CASE("rigid coupling: the stiffness it says the device feels is the one it 
 TEST_CASE("rigid coupling: the passivity bound is 2 b / T in force and in torque, by lever too") {
     const haptics::DeviceDamping device{0.5, 1e-4, 1e-3};
     const CouplingSpring spring = haptics::safe_spring(device, 1.0);
-    CHECK(spring.stiffness_npm == doctest::Approx(1000.0));
-    CHECK(spring.torsion_nmprad == doctest::Approx(0.2));
+    CHECK(spring.stiffness_npm == doctest::Approx(1000.0).scale(0.0));
+    CHECK(spring.torsion_nmprad == doctest::Approx(0.2).scale(0.0));
     haptics::RepresentativeContact c{.share = 1.0};
     for (const int n : {1, 2, 4, 8}) { // parallel contacts of 300 N/m: n k < 2 b / T
         haptics::Matrix6 k{};
         for (int i = 0; i < n; ++i)
             haptics::add_stiffness(k, c, 300.0, {});
-        CHECK(haptics::passivity_share(k, device) == doctest::Approx(n * 300.0 / 1000.0));
+        CHECK(haptics::passivity_share(k, device) ==
+              doctest::Approx(n * 300.0 / 1000.0).scale(0.0));
     }
     // at arm r: the matrix has rank one, so its eigenvalue is k (1 / b + r^2 / b_rot) T / 2
     c.place_m = {0.02, 0, 0};
     haptics::Matrix6 k{};
     haptics::add_stiffness(k, c, 300.0, {});
     CHECK(haptics::passivity_share(k, device) ==
-          doctest::Approx(300.0 * (1 / 0.5 + 0.02 * 0.02 / 1e-4) * 1e-3 / 2));
+          doctest::Approx(300.0 * (1 / 0.5 + 0.02 * 0.02 / 1e-4) * 1e-3 / 2).scale(0.0));
 }
 
 TEST_CASE("rigid coupling: on a bare device stable up to 2 b / T against any contact, not beyond") {
@@ -98,8 +125,9 @@ TEST_CASE("rigid coupling: on a bare device stable up to 2 b / T against any con
             const ToolContact wall{.contact = {.depth_m = 0.0, .share = 1.0}, .second = 0};
             haptics::balance(tool, {&wall, 1}, contact_npm);
             const double felt_npm = tool[0].felt[2][2];
-            CHECK(felt_npm ==
-                  doctest::Approx(spring_npm * contact_npm / (spring_npm + contact_npm)));
+            CHECK(
+                felt_npm ==
+                doctest::Approx(spring_npm * contact_npm / (spring_npm + contact_npm)).scale(0.0));
             CHECK((sampled_wall_radius(0.1, 0.5, felt_npm, 1e-3) < 1.0) == (felt_npm < 1000.8));
         }
     }

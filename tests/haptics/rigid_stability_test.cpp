@@ -74,7 +74,7 @@ TEST_CASE("rigid stability: a bare device dropped askew on a plane lies down and
                 unrest_j(rig, {turn(random.in_ball(), 0.4), {0, 0, 0.025}}, {0, 0, -1.0});
             CAPTURE(contact_npm);
             CHECK(unrest < 1e-8);
-            CHECK(rig.tick.wrench[0].force_n.z == doctest::Approx(1.0).epsilon(1e-3));
+            CHECK(rig.tick.wrench[0].force_n.z == doctest::Approx(1.0).scale(0.0).epsilon(1e-3));
             // flat: face down
             double most = 0.0;
             for (int axis = 0; axis < 3; ++axis)

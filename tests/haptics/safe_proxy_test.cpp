@@ -48,7 +48,7 @@ TEST_CASE("safe proxy: pressed on a floor it pushes back with stiffness times de
         for (int i = 0; i < 40; ++i)
             b.lead(step_safe_proxy, {0.003, 0.001, radius_m - 1e-4 * i});
         CHECK(b.state.touching);
-        CHECK(b.state.force_n.z == doctest::Approx(500.0 * 39e-4).epsilon(1e-4));
+        CHECK(b.state.force_n.z == doctest::Approx(500.0 * 39e-4).scale(0.0).epsilon(1e-4));
         CHECK(std::abs(b.state.force_n.x) + std::abs(b.state.force_n.y) < 1e-9);
         // and off it is free at once
         b.lead(step_safe_proxy, {0.003, 0.001, radius_m + 1e-4});

@@ -166,8 +166,8 @@ TEST_CASE("virtual proxy: a stuck ball does not creep, a sliding one drags mu ti
     for (int i = 1; i < 1000; ++i) {
         b.lead(step_virtual_proxy, {0.41 * push_m + 1e-5 * i, 0, kRadius_m - push_m});
         CHECK(b.state.sliding);
-        CHECK(b.state.force_n.x == doctest::Approx(-0.3).epsilon(1e-3));
-        CHECK(b.state.force_n.z == doctest::Approx(1.0).epsilon(1e-3));
+        CHECK(b.state.force_n.x == doctest::Approx(-0.3).scale(0.0).epsilon(1e-3));
+        CHECK(b.state.force_n.z == doctest::Approx(1.0).scale(0.0).epsilon(1e-3));
     }
     CHECK(b.lead(step_virtual_proxy, {0.02, 0, 2e-3}).force_n == dvec3{0.0});
 }

@@ -76,7 +76,7 @@ TEST_CASE("follow-path: drawn once along, it is begun and completed, without a b
     // half a radius before the end, at this speed
     const double seconds = (0.15 - 0.002) / kSpeed_mps;
     CHECK(static_cast<double>(attempt.progress.complete_tick) * kTick_s ==
-          doctest::Approx(seconds).epsilon(1e-3));
+          doctest::Approx(seconds).scale(0.0).epsilon(1e-3));
 }
 
 TEST_CASE("follow-path: deviations are those of a sine beside the path") {
@@ -92,10 +92,11 @@ TEST_CASE("follow-path: deviations are those of a sine beside the path") {
     }
     REQUIRE(attempt.progress.complete);
     CHECK(attempt.metric("deviation_rms") ==
-          doctest::Approx(kAmplitude_m / std::sqrt(2.0)).epsilon(1e-3));
+          doctest::Approx(kAmplitude_m / std::sqrt(2.0)).scale(0.0).epsilon(1e-3));
     CHECK(attempt.metric("deviation_mean") ==
-          doctest::Approx(2.0 / std::numbers::pi * kAmplitude_m).epsilon(1e-3));
-    CHECK(attempt.metric("deviation_max") == doctest::Approx(kAmplitude_m).epsilon(1e-3));
+          doctest::Approx(2.0 / std::numbers::pi * kAmplitude_m).scale(0.0).epsilon(1e-3));
+    CHECK(attempt.metric("deviation_max") ==
+          doctest::Approx(kAmplitude_m).scale(0.0).epsilon(1e-3));
     CHECK(attempt.metric("path_inside") == 1.0);
 }
 
@@ -107,7 +108,7 @@ TEST_CASE("follow-path: the dimple under a deep press is no deviation") {
         attempt.tick(seen);
     }
     CHECK(attempt.progress.complete);
-    CHECK(attempt.metric("deviation_mean") == doctest::Approx(1e-3).epsilon(1e-3));
+    CHECK(attempt.metric("deviation_mean") == doctest::Approx(1e-3).scale(0.0).epsilon(1e-3));
 }
 
 TEST_CASE("follow-path: leaving the path in contact is one mistake, coming back and leaving two") {
@@ -115,7 +116,7 @@ TEST_CASE("follow-path: leaving the path in contact is one mistake, coming back 
     attempt.draw(0.0, 0.05);
     attempt.draw(0.05, 0.054, 6e-3); // 0.2 s
     CHECK(attempt.kinds() == Kinds{EventKind::path_begun, EventKind::path_left});
-    CHECK(attempt.progress.events.back().value == doctest::Approx(6e-3));
+    CHECK(attempt.progress.events.back().value == doctest::Approx(6e-3).scale(0.0));
     attempt.draw(0.05, 0.07);
     attempt.draw(0.07, 0.074, -6e-3);
     CHECK(count(attempt.progress, EventKind::path_left) == 2);
@@ -134,7 +135,7 @@ TEST_CASE("follow-path: lifting is a break and no mistake; it goes on where it w
     attempt.draw(0.0, 0.06);
     attempt.lift();
     CHECK(attempt.metric("path_breaks") == 1.0);
-    CHECK(attempt.metric("path_coverage") == doctest::Approx(0.4).epsilon(1e-2));
+    CHECK(attempt.metric("path_coverage") == doctest::Approx(0.4).scale(0.0).epsilon(1e-2));
     attempt.draw(0.058, 0.15);
     CHECK(attempt.kinds() == Kinds{EventKind::path_begun, EventKind::completed});
     CHECK(attempt.metric("path_inside") < 1.0);
@@ -147,7 +148,7 @@ TEST_CASE("follow-path: a part that is skipped breaks the order and does not cou
     attempt.draw(0.09, 0.15);
     CHECK(attempt.kinds() == Kinds{EventKind::path_begun, EventKind::order_broken});
     CHECK_FALSE(attempt.progress.complete);
-    CHECK(attempt.metric("path_coverage") == doctest::Approx(1.0 / 3.0).epsilon(1e-2));
+    CHECK(attempt.metric("path_coverage") == doctest::Approx(1.0 / 3.0).scale(0.0).epsilon(1e-2));
     attempt.lift();
     attempt.draw(0.05, 0.15);
     CHECK(attempt.progress.complete);
@@ -187,8 +188,8 @@ TEST_CASE("follow-path: too much force is an error, too little does not count") 
     attempt.draw(0.09, 0.15);
     CHECK(attempt.progress.complete);
     CHECK(attempt.kinds().size() == 3); // and completed
-    CHECK(attempt.metric("path_coverage") == doctest::Approx(0.6).epsilon(1e-2));
-    CHECK(attempt.metric("path_in_band") == doctest::Approx(88.0 / 148.0).epsilon(1e-2));
+    CHECK(attempt.metric("path_coverage") == doctest::Approx(0.6).scale(0.0).epsilon(1e-2));
+    CHECK(attempt.metric("path_in_band") == doctest::Approx(88.0 / 148.0).scale(0.0).epsilon(1e-2));
     CHECK(attempt.metric("path_breaks") == 0.0);
 }
 

@@ -26,7 +26,7 @@ TEST_CASE("the path of a circle is its circumference, of the tool that drew it")
     const double arc_m = 0.02 * 2.0 * std::numbers::pi * (8.0 - start_s) / 4.0;
     CHECK(value(s, "path_length.right") == relative(arc_m, 1e-4));
     CHECK(value(s, "path_length") == relative(arc_m, 1e-4));
-    CHECK(value(s, "path_length.left") == doctest::Approx(0.0).epsilon(1e-12));
+    CHECK(std::abs(value(s, "path_length.left")) < 1e-12); // the filter's rounding in 8000 ticks
     CHECK(value(s, "speed_mean.right") == relative(0.02 * 2.0 * std::numbers::pi / 4.0, 1e-4));
     CHECK(value(s, "idle.right") == 0.0);
     CHECK(value(s, "idle.left") == 1.0);

@@ -10,7 +10,7 @@ TEST_CASE("masses add up to density times volume") {
     const tissue::TetMesh mesh = tissue::box_mesh({0.04, 0.03, 0.02}, {4, 3, 2}, 0.1);
     const auto model = tissue::make_corotated(mesh, bodies::elastic(8e3, 0.45, 1060.0), {});
     CHECK(std::accumulate(model.mass_kg.begin(), model.mass_kg.end(), 0.0) ==
-          doctest::Approx(1060.0 * 0.04 * 0.03 * 0.02).epsilon(1e-13));
+          doctest::Approx(1060.0 * 0.04 * 0.03 * 0.02).scale(0.0).epsilon(1e-13));
 }
 
 TEST_CASE("gradients reproduce every linear field and sum to zero") {

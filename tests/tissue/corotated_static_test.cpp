@@ -168,11 +168,11 @@ TEST_CASE("linear tetrahedra converge with second order in displacement") {
 
 TEST_CASE("a clamped cantilever bends as other linear tetrahedra do, locking included") {
     // published to 4 digits: P1 on 10x2x2 and 20x4x4 cells, nu 0.3, 0.45, 0.49
-    CHECK(cantilever_mm({10, 2, 2}, 0.30) == doctest::Approx(13.06).epsilon(1e-3));
-    CHECK(cantilever_mm({10, 2, 2}, 0.45) == doctest::Approx(7.91).epsilon(1e-3));
-    CHECK(cantilever_mm({10, 2, 2}, 0.49) == doctest::Approx(3.22).epsilon(2e-3));
-    CHECK(cantilever_mm({20, 4, 4}, 0.30) == doctest::Approx(20.16).epsilon(1e-3));
-    CHECK(cantilever_mm({20, 4, 4}, 0.45) == doctest::Approx(15.21).epsilon(1e-3));
+    CHECK(cantilever_mm({10, 2, 2}, 0.30) == doctest::Approx(13.06).scale(0.0).epsilon(1e-3));
+    CHECK(cantilever_mm({10, 2, 2}, 0.45) == doctest::Approx(7.91).scale(0.0).epsilon(1e-3));
+    CHECK(cantilever_mm({10, 2, 2}, 0.49) == doctest::Approx(3.22).scale(0.0).epsilon(2e-3));
+    CHECK(cantilever_mm({20, 4, 4}, 0.30) == doctest::Approx(20.16).scale(0.0).epsilon(1e-3));
+    CHECK(cantilever_mm({20, 4, 4}, 0.45) == doctest::Approx(15.21).scale(0.0).epsilon(1e-3));
 }
 
 TEST_CASE("a heavy beam hangs where an independent solver of the same tetrahedra finds it") {

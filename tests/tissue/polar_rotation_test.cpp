@@ -62,7 +62,7 @@ TEST_CASE("a collapsed F still gives a proper rotation") {
     for (const dmat3& F : {dmat3(0.0), line, dmat3{a, b, a + b}, diagonal(1, 1, -1)}) {
         const dmat3 R = tissue::polar_rotation(F);
         CHECK(distance(glm::transpose(R) * R, dmat3(1.0)) < 1e-14);
-        CHECK(glm::determinant(R) == doctest::Approx(1.0).epsilon(1e-14));
+        CHECK(glm::determinant(R) == doctest::Approx(1.0).scale(0.0).epsilon(1e-14));
     }
 }
 

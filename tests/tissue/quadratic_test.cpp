@@ -47,10 +47,11 @@ TEST_CASE("forces of a bent body of curved tets are the reference's to rounding"
         off = std::max(off, glm::length(f - expected[i]));
     }
     CHECK(off < 1e-12 * greatest);
-    CHECK(system.energy_j == doctest::Approx(elastic_energy_j(reference, state.position_m)));
+    CHECK(system.energy_j ==
+          doctest::Approx(elastic_energy_j(reference, state.position_m)).scale(0.0));
     auto exact = make_system(reference);
     linearize(reference, {state.position_m, {}}, exact);
-    CHECK(system.min_det_f == doctest::Approx(exact.min_det_f));
+    CHECK(system.min_det_f == doctest::Approx(exact.min_det_f).scale(0.0));
 }
 
 TEST_CASE("a solve of any right-hand side leaves what it says of the reference's matrix") {
@@ -162,7 +163,7 @@ TEST_CASE("way and A^-1 residual is the first Newton iteration") {
     solve(model, once, residual, system, du);
     free_motion(model, once, system, expected);
     for (std::size_t k = 0; k < n; ++k)
-        CHECK(way[k] + du[k] == doctest::Approx(expected[k]).epsilon(1e-6));
+        CHECK(way[k] + du[k] == doctest::Approx(expected[k]).scale(0.0).epsilon(1e-6));
 }
 
 TEST_CASE("patch test: inside a boundary that moved affinely all nodes follow") {

@@ -86,10 +86,10 @@ double furthest_m(const tissue::ReferenceState& a, const tissue::ReferenceState&
 
 TEST_CASE("Cook's membrane leans as other quadratic tetrahedra let it, near nu = 0.5 too") {
     // what an independent solver found for P2 on 8x8x2 cells; converged: 23.79, 23.79, 23.83, 24.0
-    CHECK(cook({8, 8, 2}, 1.0 / 3) == doctest::Approx(23.66).epsilon(2e-3));
-    CHECK(cook({8, 8, 2}, 0.45) == doctest::Approx(23.46).epsilon(2e-3));
-    CHECK(cook({8, 8, 2}, 0.49) == doctest::Approx(23.12).epsilon(2e-3));
-    CHECK(cook({8, 8, 2}, 0.499) == doctest::Approx(22.60).epsilon(2e-3));
+    CHECK(cook({8, 8, 2}, 1.0 / 3) == doctest::Approx(23.66).scale(0.0).epsilon(2e-3));
+    CHECK(cook({8, 8, 2}, 0.45) == doctest::Approx(23.46).scale(0.0).epsilon(2e-3));
+    CHECK(cook({8, 8, 2}, 0.49) == doctest::Approx(23.12).scale(0.0).epsilon(2e-3));
+    CHECK(cook({8, 8, 2}, 0.499) == doctest::Approx(22.60).scale(0.0).epsilon(2e-3));
 }
 
 TEST_CASE("a twisted square bar answers with Saint-Venant's torque, warping free") {
@@ -120,7 +120,7 @@ TEST_CASE("a twisted square bar answers with Saint-Venant's torque, warping free
         }
         const double shear_pa = young / (2 * (1 + poisson));
         const double theory_nm = shear_pa * square_torsion_m4(side) * twist_rad / length;
-        CHECK(torque_nm == doctest::Approx(theory_nm).epsilon(2e-3));
+        CHECK(torque_nm == doctest::Approx(theory_nm).scale(0.0).epsilon(2e-3));
     }
 }
 
@@ -162,7 +162,7 @@ TEST_CASE("a thick tube under pressure widens as Lame says, on curved tetrahedra
     };
     const double pressure_pa = u * young / a / ((b * b + a * a) / (b * b - a * a) + poisson);
     const double theory_j = 0.5 * pressure_pa * u * std::numbers::pi / 2 * a * height;
-    CHECK(energy_j(true) == doctest::Approx(theory_j).epsilon(5e-4));
+    CHECK(energy_j(true) == doctest::Approx(theory_j).scale(0.0).epsilon(5e-4));
     CHECK(energy_j(false) < 0.995 * theory_j); // the faces of straight ones miss part of the wall
 }
 
@@ -181,7 +181,7 @@ TEST_CASE("a block pressed to two thirds of its height stores the work done on i
         const double weight = i == kDepths ? 1 : i % 2 == 1 ? 4 : 2;
         work_j += weight * block.push_n(state) * block.size_m.z / 3 / (3 * kDepths);
     }
-    CHECK(report.energy_j == doctest::Approx(work_j).epsilon(1e-4));
+    CHECK(report.energy_j == doctest::Approx(work_j).scale(0.0).epsilon(1e-4));
 
     // and all at once
     const auto target = block.target_m(block.size_m.z / 3);
