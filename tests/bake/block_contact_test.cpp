@@ -4,6 +4,7 @@
 // `slow`: the larger meshes.
 #include "assets/bake/bake.h"
 #include "tests/tissue/pressed_block.h"
+#include "tissue/response/footprint.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,18 +18,32 @@ namespace {
 constexpr int kNormal = 2, kTangent = 0;
 constexpr double kTips_m[] = {1.5e-3, 2.5e-3, 5e-3};
 
-block::PressedBlock baked_block(const std::string& name) {
+tissue::BakedOrgan baked_organ(const std::string& name) {
     const std::string file = name + ".toml";
     std::ifstream in(std::filesystem::path(ORGAN_RECIPES) / file, std::ios::binary);
     REQUIRE(in);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
-    const tissue::BakedOrgan organ = bake::bake(bake::parse_recipe(text, file), {}).organ;
+    tissue::BakedOrgan organ = bake::bake(bake::parse_recipe(text, file), {}).organ;
     REQUIRE(organ.material.young_pa == block::kYoung_pa);
     REQUIRE(organ.material.poisson == block::kPoisson);
+    return organ;
+}
+
+block::PressedBlock baked_block(const std::string& name) {
+    const tissue::BakedOrgan organ = baked_organ(name);
     const auto& s = organ.surface;
     CHECK(*std::min_element(s.mesh_term_n_m.begin(), s.mesh_term_n_m.end()) >= 0.0);
     CHECK(*std::min_element(s.mesh_term_t_m.begin(), s.mesh_term_t_m.end()) >= 0.0);
     return {organ.mesh, organ.anchored, organ.surface};
+}
+
+// The same tetrahedra with quadratic shapes, and no mesh term.
+block::PressedBlock quadratic_block(const std::string& name) {
+    tissue::BakedOrgan organ = baked_organ(name);
+    tissue::make_footprints(organ.mesh, organ.anchored,
+                            {.order = 2, .tip_radius_max_m = organ.tip_radius_max_m},
+                            organ.surface);
+    return {organ.mesh, organ.anchored, organ.surface, 2};
 }
 
 // Stiffness over that of the tissue, its scatter, and a slide, for every tip.
@@ -44,6 +59,21 @@ void check_block(const block::PressedBlock& pressed) {
             CHECK(s.high < 1.10);
             CHECK(block::worst_slide_step(pressed, axis, a_m) < 0.01);
         }
+        const auto law = tissue::make_sphere_law(a_m, block::kYoung_pa, block::kPoisson, 10, 257);
+        CHECK(block::worst_force_step_n(pressed, 4e-3, law, a_m) < 1e-3);
+    }
+}
+
+// The same for quadratic shapes; `deviation`: allowed scatter.
+void check_quadratic_block(const block::PressedBlock& pressed, double deviation) {
+    for (const double a_m : kTips_m) {
+        CAPTURE(a_m);
+        const block::Spread normal = block::spread(pressed, kNormal, a_m);
+        CHECK(std::abs(normal.mean - 1.0) < 0.07);
+        CHECK(normal.deviation < deviation);
+        CHECK(std::abs(block::spread(pressed, kTangent, a_m).mean - 1.0) < 0.08);
+        CHECK(block::worst_slide_step(pressed, kNormal, a_m) < 0.01);
+        CHECK(block::worst_slide_step(pressed, kTangent, a_m) < 0.01);
         const auto law = tissue::make_sphere_law(a_m, block::kYoung_pa, block::kPoisson, 10, 257);
         CHECK(block::worst_force_step_n(pressed, 4e-3, law, a_m) < 1e-3);
     }
@@ -66,7 +96,23 @@ TEST_CASE("baked block: tets of 12 mm answer as the tissue does") {
     check_sphere(pressed);
 }
 
+TEST_CASE("baked block: quadratic tets of 12 mm answer as the tissue does without a mesh term") {
+    const auto pressed = quadratic_block("block_u12");
+    check_quadratic_block(pressed, 0.02);
+    check_sphere(pressed);
+}
+
 TEST_SUITE_BEGIN("slow");
+
+TEST_CASE("baked block: quadratic tets of 8 mm answer as the tissue does without a mesh term") {
+    check_quadratic_block(quadratic_block("block_u8"), 0.02);
+}
+
+TEST_CASE("baked block: graded quadratic tets answer as the tissue does without a mesh term") {
+    const auto pressed = quadratic_block("block_g12");
+    check_quadratic_block(pressed, 0.035); // 3.1 % for a tip as large as two of the small tets
+    check_sphere(pressed);
+}
 
 TEST_CASE("baked block: tets of 8 mm answer as the tissue does") {
     const auto pressed = baked_block("block_u8");

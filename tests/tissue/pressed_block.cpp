@@ -4,7 +4,9 @@
 
 #include "tests/tissue/block.h"
 #include "tissue/response/footprint.h"
+#include "tissue/response/linear_statics.h"
 #include "tissue/response/mesh_term.h"
+#include "tissue/solver/corotated.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,28 +60,47 @@ template <class Visit> void slide(const Visit& visit) {
 } // namespace
 
 PressedBlock::PressedBlock(tissue::TetMesh mesh, std::vector<std::uint8_t> anchored,
-                           tissue::ContactSurface skin)
-    : model_(tissue::make_corotated(mesh, block_material(), anchored)), skin_(std::move(skin)),
-      slot_(mesh.rest_m.size(), -1) {
+                           tissue::ContactSurface skin, int order)
+    : mesh_(std::move(mesh)), skin_(std::move(skin)) {
+    if (order == 2) {
+        const auto statics = tissue::make_linear_statics(mesh_, 2, kPoisson, anchored);
+        tissue::SparseFactor factor(statics.pattern);
+        if (!factor.factor(statics.stiffness_m))
+            throw std::runtime_error("block: nothing holds it");
+        find_flexibility(statics.dof, factor, 1.0 / kYoung_pa);
+        return;
+    }
+    const auto model = tissue::make_corotated(mesh_, block_material(), anchored);
+    tissue::CorotatedSystem system = tissue::make_system(model);
+    tissue::linearize(model, tissue::rest_state(model), std::numeric_limits<double>::infinity(),
+                      system);
+    find_flexibility(model.dof, system.factor, 1.0);
+}
+
+void PressedBlock::find_flexibility(std::span<const std::int32_t> dof, tissue::SparseFactor& factor,
+                                    double scale) {
     std::vector<std::uint32_t> nodes(skin_.row_node);
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    std::erase_if(nodes, [&](auto node) { return model_.dof[node] < 0; });
+    std::erase_if(nodes, [&](auto node) { return dof[node] < 0; });
+    slot_.assign(dof.size(), -1);
     for (const std::uint32_t node : nodes)
         slot_[node] = static_cast<std::int32_t>(slots_++);
 
-    tissue::CorotatedSystem system = tissue::make_system(model_);
-    tissue::linearize(model_, tissue::rest_state(model_), std::numeric_limits<double>::infinity(),
-                      system);
-    const std::size_t n = model_.unknowns;
+    const std::size_t n = 3 * static_cast<std::size_t>(std::count_if(
+                                  dof.begin(), dof.end(), [](auto d) { return d >= 0; }));
+    constexpr std::size_t kColumns = 64;
     for (int axis = 0; axis < 3; ++axis) {
-        std::vector<double> u(n * slots_, 0.0);
-        for (std::size_t s = 0; s < slots_; ++s)
-            u[s * n + model_.dof[nodes[s]] + axis] = 1.0;
-        system.factor.solve(u, static_cast<int>(slots_));
-        for (std::size_t s = 0; s < slots_; ++s) {
-            for (std::size_t t = 0; t < slots_; ++t)
-                flexibility_mpn_[axis].push_back(u[s * n + model_.dof[nodes[t]] + axis]);
+        for (std::size_t first = 0; first < slots_; first += kColumns) {
+            const std::size_t columns = std::min(kColumns, slots_ - first);
+            std::vector<double> u(n * columns, 0.0);
+            for (std::size_t c = 0; c < columns; ++c)
+                u[c * n + dof[nodes[first + c]] + axis] = scale;
+            factor.solve(u, static_cast<int>(columns));
+            for (std::size_t c = 0; c < columns; ++c) {
+                for (const std::uint32_t node : nodes)
+                    flexibility_mpn_[axis].push_back(u[c * n + dof[node] + axis]);
+            }
         }
     }
 }
@@ -183,6 +204,17 @@ PressedBlock pressed_box(const glm::dvec3& size_m, const std::array<int, 3>& cel
     tissue::make_footprints(mesh, anchored, options, skin);
     tissue::make_mesh_terms(mesh, kPoisson, anchored, options, skin);
     return {mesh, anchored, skin};
+}
+
+PressedBlock quadratic_box(const dvec3& size_m, const std::array<int, 3>& cells, double jitter,
+                           bool point_rows, double tip_radius_max_m) {
+    const tissue::TetMesh mesh = tissue::box_mesh(size_m, cells, jitter);
+    const std::vector<std::uint8_t> anchored = bottom_anchored(mesh);
+    tissue::ContactSurface skin = top_skin(size_m, 4e-3);
+    tissue::make_footprints(
+        mesh, anchored,
+        {.order = 2, .tip_radius_max_m = tip_radius_max_m, .point_rows = point_rows}, skin);
+    return {mesh, anchored, skin, 2};
 }
 
 double regular_mpn(double x_m, double y_m, int axis) {

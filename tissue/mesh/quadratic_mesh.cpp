@@ -16,6 +16,11 @@ Edge edge_of(std::uint32_t a, std::uint32_t b) noexcept {
 
 } // namespace
 
+std::array<double, 6> triangle_shapes(const glm::dvec3& l) noexcept {
+    return {l[0] * (2.0 * l[0] - 1.0), l[1] * (2.0 * l[1] - 1.0), l[2] * (2.0 * l[2] - 1.0),
+            4.0 * l[0] * l[1],         4.0 * l[1] * l[2],         4.0 * l[2] * l[0]};
+}
+
 QuadraticMesh quadratic_mesh(const TetMesh& mesh) {
     check_mesh(mesh);
     std::vector<Edge> edges;

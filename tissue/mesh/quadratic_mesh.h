@@ -18,6 +18,10 @@ inline constexpr std::array<std::array<int, 2>, 6> kEdge{
 /// Three corners counter-clockwise seen from outside, then the nodes between 0-1, 1-2, 2-0.
 using Triangle6 = std::array<std::uint32_t, 6>;
 
+/// Shapes of the six nodes at barycentric `l`: l_i (2 l_i - 1), then 4 l_i l_j. They sum to 1; a
+/// corner's is negative where l_i < 1/2.
+std::array<double, 6> triangle_shapes(const glm::dvec3& l) noexcept;
+
 struct QuadraticMesh {
     std::vector<glm::dvec3> rest_m;
     std::vector<Tet10> tets;

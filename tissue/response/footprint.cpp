@@ -2,6 +2,7 @@
 // Footprint rows of the skin, vertex by vertex. Called by bake and tests, any thread.
 #include "tissue/response/footprint.h"
 
+#include "tissue/mesh/quadratic_mesh.h"
 #include "tissue/response/footprint_kernel.h"
 
 #include <algorithm>
@@ -40,11 +41,15 @@ void check_inputs(const TetMesh& mesh, std::span<const std::uint8_t> anchored,
     if (!anchored.empty() && anchored.size() != mesh.rest_m.size())
         throw std::invalid_argument(std::to_string(anchored.size()) + " anchor flags for " +
                                     std::to_string(mesh.rest_m.size()) + " nodes");
-    if (!(options.size_factor > 0.0) || !(options.tip_radius_max_m > 0.0))
+    if (options.order != 1 && options.order != 2)
+        throw std::invalid_argument("footprint: order = " + std::to_string(options.order) +
+                                    ": must be 1 or 2");
+    if (!(options.size_factor > 0.0) || !(options.even_factor > 0.0) ||
+        !(options.tip_radius_max_m > 0.0))
         throw std::invalid_argument(
             "footprint: size_factor = " + std::to_string(options.size_factor) +
-            ", tip_radius_max_m = " + std::to_string(options.tip_radius_max_m) +
-            ": both must be greater than 0");
+            ", even_factor = " + std::to_string(options.even_factor) + ", tip_radius_max_m = " +
+            std::to_string(options.tip_radius_max_m) + ": each must be greater than 0");
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
         for (const std::uint32_t v : surface.triangles[t]) {
             if (v >= surface.rest_m.size())
@@ -83,14 +88,36 @@ double size_at(const BoundaryTree& tree, const BoundaryPoint& at, std::span<cons
     return glm::dot(at.weight, dvec3{size[a], size[b], size[c]});
 }
 
-void append_row(const BoundaryTree& tree, std::span<const KernelSample> samples, const dvec3& at_m,
-                ContactSurface& surface) {
+// Whose shapes stand on the boundary: its triangles as the tree numbers them.
+struct Shapes {
+    std::vector<dvec3> node_m;
+    std::vector<Triangle6> quadratic; // empty: linear
+};
+
+Shapes make_shapes(const TetMesh& mesh, int order) {
+    if (order == 1)
+        return {mesh.rest_m, {}};
+    QuadraticMesh quadratic = quadratic_mesh(mesh);
+    std::vector<Triangle6> triangles = boundary_triangles(quadratic);
+    return {std::move(quadratic.rest_m), std::move(triangles)};
+}
+
+void append_row(const BoundaryTree& tree, const Shapes& shapes,
+                std::span<const KernelSample> samples, const dvec3& at_m, ContactSurface& surface) {
     std::map<std::uint32_t, double> weight;
     for (const KernelSample& sample : samples) {
-        for (int k = 0; k < 3; ++k)
-            weight[tree.triangle[sample.at.triangle][k]] += sample.share * sample.at.weight[k];
+        const std::uint32_t t = sample.at.triangle;
+        if (shapes.quadratic.empty()) {
+            for (int k = 0; k < 3; ++k)
+                weight[tree.triangle[t][k]] += sample.share * sample.at.weight[k];
+        } else {
+            const std::array<double, 6> value = triangle_shapes(sample.at.weight);
+            for (int k = 0; k < 6; ++k)
+                weight[shapes.quadratic[t][k]] += sample.share * value[k];
+        }
     }
-    std::erase_if(weight, [](const auto& entry) { return entry.second < kSmallestWeight; });
+    std::erase_if(weight,
+                  [](const auto& entry) { return std::abs(entry.second) < kSmallestWeight; });
     double sum = 0.0;
     for (const auto& [node, w] : weight)
         sum += w;
@@ -98,15 +125,18 @@ void append_row(const BoundaryTree& tree, std::span<const KernelSample> samples,
     for (const auto& [node, w] : weight) {
         surface.row_node.push_back(node);
         surface.row_weight.push_back(w / sum);
-        carried += w / sum * tree.node_m[node];
+        carried += w / sum * shapes.node_m[node];
     }
     surface.row_start.push_back(static_cast<std::uint32_t>(surface.row_node.size()));
     surface.offset_m.push_back(at_m - carried);
 }
 
-} // namespace
+// Volume-weighted mean edge at every node, and with coarse tets below a fine skin counted.
+struct NodalSize {
+    std::vector<double> own_m, grown_m;
+};
 
-std::vector<double> nodal_size_m(const TetMesh& mesh) {
+NodalSize nodal_sizes(const TetMesh& mesh) {
     const std::size_t nodes = mesh.rest_m.size();
     std::vector<double> sum(nodes, 0.0), volume(nodes, 0.0);
     for (const Tet& tet : mesh.tets) {
@@ -117,25 +147,41 @@ std::vector<double> nodal_size_m(const TetMesh& mesh) {
             volume[node] += v;
         }
     }
-    std::vector<double> mean(nodes, 0.0);
+    NodalSize size{std::vector<double>(nodes, 0.0), {}};
     for (std::size_t i = 0; i < nodes; ++i)
-        mean[i] = volume[i] > 0.0 ? sum[i] / volume[i] : 0.0;
+        size.own_m[i] = volume[i] > 0.0 ? sum[i] / volume[i] : 0.0;
 
-    // h_i = max_j (h_j - 0.3 |x_i - x_j|): coarse tets below a fine skin count
-    std::vector<double> size = mean;
+    // h_i = max_j (h_j - 0.3 |x_i - x_j|)
+    size.grown_m = size.own_m;
     for (std::size_t i = 0; i < nodes; ++i) {
         for (std::size_t j = 0; j < nodes; ++j)
-            size[i] = std::max(size[i],
-                               mean[j] - kGrowth * glm::distance(mesh.rest_m[i], mesh.rest_m[j]));
+            size.grown_m[i] =
+                std::max(size.grown_m[i],
+                         size.own_m[j] - kGrowth * glm::distance(mesh.rest_m[i], mesh.rest_m[j]));
     }
     return size;
+}
+
+// c where the size is `grown_m`, `own_m` without the coarse tets around. Where they count, the mesh
+// is graded.
+double factor_at(const FootprintOptions& options, double own_m, double grown_m) {
+    return options.order == 1
+               ? options.size_factor
+               : std::min(options.size_factor, options.even_factor * grown_m / own_m);
+}
+
+} // namespace
+
+std::vector<double> nodal_size_m(const TetMesh& mesh) {
+    return nodal_sizes(mesh).grown_m;
 }
 
 void make_footprints(const TetMesh& mesh, std::span<const std::uint8_t> anchored,
                      const FootprintOptions& options, ContactSurface& surface) {
     check_inputs(mesh, anchored, options, surface);
     const BoundaryTree tree = make_boundary_tree(mesh);
-    const std::vector<double> size = nodal_size_m(mesh);
+    const Shapes shapes = make_shapes(mesh, options.order);
+    const NodalSize size = nodal_sizes(mesh);
     const std::vector<dvec3> normal = vertex_normals(surface.rest_m, surface.triangles);
     const std::size_t vertices = surface.rest_m.size();
 
@@ -157,14 +203,18 @@ void make_footprints(const TetMesh& mesh, std::span<const std::uint8_t> anchored
         const dvec3& at_m = surface.rest_m[v];
         if (normal[v] == dvec3{0.0})
             throw std::invalid_argument("skin vertex " + std::to_string(v) + " has no area");
-        const double h = size_at(tree, nearest_point(tree, at_m), size);
-        const double reach = kernel_reach_m(h, options);
+        const BoundaryPoint near = nearest_point(tree, at_m);
+        const double h = size_at(tree, near, size.grown_m);
+        FootprintOptions here = options;
+        here.size_factor = factor_at(options, size_at(tree, near, size.own_m), h);
+        const double reach = kernel_reach_m(h, here);
         const BoundaryPoint below = point_below(tree, at_m, normal[v], reach);
-        const double r = kernel_radius_m(edges, at_m, normal[v], h, options);
+        const double r = kernel_radius_m(edges, at_m, normal[v], h, here);
         if (options.point_rows)
-            append_row(tree, std::vector<KernelSample>{{below, 1.0}}, at_m, surface);
+            append_row(tree, shapes, std::vector<KernelSample>{{below, 1.0}}, at_m, surface);
         else
-            append_row(tree, kernel_samples(tree, at_m, normal[v], r, reach), at_m, surface);
+            append_row(tree, shapes, kernel_samples(tree, at_m, normal[v], r, reach), at_m,
+                       surface);
         surface.frame_node.push_back(tree.triangle[below.triangle]);
         surface.footprint_radius_m.push_back(r);
         surface.thickness_m.push_back(backed_thickness_m(tree, anchored, below, normal[v]));

@@ -3,6 +3,7 @@
 #include "tissue/response/linear_statics.h"
 
 #include "tissue/material/elastic.h"
+#include "tissue/mesh/quadratic_mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +18,6 @@ namespace {
 
 using glm::dmat3;
 using glm::dvec3;
-
-constexpr std::array<std::array<int, 2>, 6> kEdge{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
 std::uint32_t mid_node(const LinearStatics& s, std::uint32_t a, std::uint32_t b) {
     const std::array<std::uint32_t, 3> key{std::min(a, b), std::max(a, b), 0};
@@ -206,14 +205,14 @@ SurfaceShape surface_shape(const LinearStatics& statics, const Triangle& triangl
                            const dvec3& weight) {
     SurfaceShape shape;
     shape.count = statics.order == 1 ? 3 : 6;
+    if (statics.order == 2)
+        shape.value = triangle_shapes(weight);
     for (int i = 0; i < 3; ++i) {
         shape.node[i] = triangle[i];
-        shape.value[i] = statics.order == 1 ? weight[i] : weight[i] * (2.0 * weight[i] - 1.0);
-        if (statics.order == 2) {
-            const int j = (i + 1) % 3;
-            shape.node[3 + i] = mid_node(statics, triangle[i], triangle[j]);
-            shape.value[3 + i] = 4.0 * weight[i] * weight[j];
-        }
+        if (statics.order == 1)
+            shape.value[i] = weight[i];
+        else
+            shape.node[3 + i] = mid_node(statics, triangle[i], triangle[(i + 1) % 3]);
     }
     return shape;
 }

@@ -19,7 +19,7 @@ struct LinearStatics {
     std::vector<double> stiffness_m; // K / E on the pattern, metres
 };
 
-/// Nodes of the mesh keep their numbers, mid-edge nodes follow. A mid-edge node is fixed where
+/// Nodes are numbered as in quadratic_mesh(). A mid-edge node is fixed where
 /// both ends are, so that the linear shapes stay a subspace of the quadratic ones. `bed`: what
 /// holds the body elastically, seen by both orders at the same points for the same reason.
 /// Throws std::invalid_argument for an order or a Poisson's ratio out of range.

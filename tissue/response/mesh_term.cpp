@@ -99,7 +99,11 @@ double excess(double quadratic, double linear, std::size_t vertex) {
 }
 
 void check_inputs(const TetMesh& mesh, std::span<const std::uint8_t> anchored,
-                  std::span<const BedSample> bed, const ContactSurface& surface) {
+                  std::span<const BedSample> bed, const FootprintOptions& options,
+                  const ContactSurface& surface) {
+    if (options.order != 1)
+        throw std::invalid_argument("mesh term: order = " + std::to_string(options.order) +
+                                    ": only linear shapes owe one, of order 1");
     if (anchored.size() != mesh.rest_m.size())
         throw std::invalid_argument("mesh term: " + std::to_string(anchored.size()) +
                                     " anchor flags for " + std::to_string(mesh.rest_m.size()) +
@@ -130,7 +134,7 @@ void check_inputs(const TetMesh& mesh, std::span<const std::uint8_t> anchored,
 void make_mesh_terms(const TetMesh& mesh, double poisson, std::span<const std::uint8_t> anchored,
                      const FootprintOptions& options, ContactSurface& surface,
                      std::span<const BedSample> bed, void (*progress)(double share)) {
-    check_inputs(mesh, anchored, bed, surface);
+    check_inputs(mesh, anchored, bed, options, surface);
     const BoundaryTree tree = make_boundary_tree(mesh);
     const std::vector<Place> places = find_places(mesh, tree, surface, options);
     const auto linear = kernel_compliances(mesh, 1, poisson, anchored, bed, tree, places, nullptr);

@@ -14,8 +14,8 @@ namespace tissue {
 /// Solved at every vertex of the skin, for near an edge nothing can be interpolated: the kernel
 /// shrinks there and the compliance rises within a tetrahedron. Tangential: mean of two tangents.
 /// `progress` (may be empty) is called with 0..1.
-/// Throws std::invalid_argument for sizes that do not fit, a Poisson's ratio out of range, and a
-/// body that nothing holds: it has no static compliance.
+/// Throws std::invalid_argument for sizes that do not fit, a Poisson's ratio out of range, rows of
+/// order 2, and a body that nothing holds: it has no static compliance.
 void make_mesh_terms(const TetMesh& mesh, double poisson, std::span<const std::uint8_t> anchored,
                      const FootprintOptions& options, ContactSurface& surface,
                      std::span<const BedSample> bed = {}, void (*progress)(double share) = nullptr);
