@@ -106,7 +106,7 @@ tissue::BakedOrgan held_by(const tissue::BakedOrgan& organ, std::vector<tissue::
     held.anchored.assign(organ.mesh.rest_m.size(), 0);
     // only a layer bonded to fixed nodes has a thickness of its own
     held.surface.thickness_m.assign(organ.surface.rest_m.size(), tissue::kUnbacked_m);
-    if (!held.bed.empty())
+    if (!held.bed.empty() && organ.order == 1) // quadratic shapes owe no term
         change_terms(organ, held);
     return held;
 }

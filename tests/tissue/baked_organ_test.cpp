@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 #include <limits>
 #include <rapidcheck.h>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 
@@ -38,6 +39,20 @@ tissue::BakedOrgan small_organ() {
     return o;
 }
 
+// The same with rows on the ten nodes: a face's middle is 4/9 of each of its edges' nodes and -1/9
+// of its corners. By ascending corners the edges are 01 02 03 12 13 23, nodes 4 to 9.
+tissue::BakedOrgan quadratic_organ() {
+    tissue::BakedOrgan o = small_organ();
+    o.order = 2;
+    o.surface.row_start = {0, 1, 2, 3, 9};
+    o.surface.row_node = {0, 1, 2, 0, 1, 2, 4, 5, 7};
+    o.surface.row_weight = {1.0, 1.0, 1.0, -1. / 9, -1. / 9, -1. / 9, 4. / 9, 4. / 9, 4. / 9};
+    o.surface.mesh_term_n_m = o.surface.mesh_term_t_m = {0, 0, 0, 0};
+    return o;
+}
+
+constexpr std::size_t kOrderAt = 8 + 4 + 8 + 5 + 1; // magic, version, "probe", rigid
+
 // FNV-1a, 64 bit (Fowler, Noll & Vo 1991), written a second time.
 std::uint64_t fnv(std::span<const std::byte> bytes) {
     std::uint64_t hash = 14695981039346656037ULL;
@@ -70,13 +85,28 @@ bool all_below(const auto& lists, std::size_t limit) {
     });
 }
 
+// Corners, and with order 2 as many more as there are different edges.
+std::size_t nodes_of_rows(const tissue::BakedOrgan& o) {
+    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (const auto& t : o.mesh.tets) {
+        for (int a = 0; a < 4; ++a) {
+            for (int b = 0; b < 4; ++b) {
+                if (a != b) {
+                    edges.emplace(std::min(t[a], t[b]), std::max(t[a], t[b]));
+                }
+            }
+        }
+    }
+    return o.mesh.rest_m.size() + (o.order == 2 ? edges.size() : 0);
+}
+
 // What a reader of the organ relies on, stated apart from the code that checks it.
 bool safe_to_use(const tissue::BakedOrgan& o) {
     const auto& s = o.surface;
     const std::size_t nodes = o.mesh.rest_m.size(), vertices = s.rest_m.size();
     bool good = all_below(o.mesh.tets, nodes) && all_below(s.triangles, vertices) &&
                 all_below(s.frame_node, nodes) && s.neighbours.size() == s.triangles.size() &&
-                o.anchored.size() == nodes;
+                o.anchored.size() == nodes && (o.order == 1 || o.order == 2);
     for (const auto& n : s.neighbours) {
         good = good && std::all_of(n.begin(), n.end(), [&](std::int32_t t) {
                    return t >= -1 && t < static_cast<std::int32_t>(s.triangles.size());
@@ -88,7 +118,8 @@ bool safe_to_use(const tissue::BakedOrgan& o) {
     good = good && s.row_start.size() == vertices + 1 && s.row_start.front() == 0 &&
            s.row_start.back() == s.row_node.size() && s.row_weight.size() == s.row_node.size() &&
            std::is_sorted(s.row_start.begin(), s.row_start.end()) &&
-           std::all_of(s.row_node.begin(), s.row_node.end(), [&](auto n) { return n < nodes; });
+           std::all_of(s.row_node.begin(), s.row_node.end(),
+                       [&](auto n) { return n < nodes_of_rows(o); });
     for (const auto* list :
          {&s.footprint_radius_m, &s.thickness_m, &s.mesh_term_n_m, &s.mesh_term_t_m}) {
         good = good && list->size() == vertices &&
@@ -104,6 +135,7 @@ TEST_CASE("baked organ: every field survives writing and reading") {
     const auto read = tissue::read_organ(tissue::write_organ(organ));
     CHECK(read.name == organ.name);
     CHECK(read.rigid == organ.rigid);
+    CHECK(read.order == organ.order);
     CHECK(read.mesh.rest_m == organ.mesh.rest_m);
     CHECK(read.mesh.tets == organ.mesh.tets);
     CHECK(read.anchored == organ.anchored);
@@ -140,7 +172,7 @@ TEST_CASE("baked organ: the file is little endian and ends with the FNV-1a hash 
         head.push_back(static_cast<char>(bytes[i]));
     }
     CHECK(head == "TROCORGN");
-    CHECK(bytes[8] == std::byte{2}); // version 1
+    CHECK(bytes[8] == std::byte{3}); // version
     CHECK(bytes[11] == std::byte{0});
     CHECK(bytes[12] == std::byte{5}); // length of the name
     CHECK(bytes[20] == std::byte{'p'});
@@ -150,9 +182,12 @@ TEST_CASE("baked organ: the file is little endian and ends with the FNV-1a hash 
 }
 
 TEST_CASE("baked organ: every shortened file is refused") {
-    const auto bytes = tissue::write_organ(small_organ());
-    for (std::size_t size = 0; size < bytes.size(); ++size) {
-        CHECK_THROWS_AS(tissue::read_organ(std::span(bytes).first(size)), std::invalid_argument);
+    for (const auto& bytes :
+         {tissue::write_organ(small_organ()), tissue::write_organ(quadratic_organ())}) {
+        for (std::size_t size = 0; size < bytes.size(); ++size) {
+            CHECK_THROWS_AS(tissue::read_organ(std::span(bytes).first(size)),
+                            std::invalid_argument);
+        }
     }
 }
 
@@ -178,9 +213,10 @@ TEST_CASE("baked organ: every single wrong bit is refused") {
 }
 
 TEST_CASE("baked organ: damage behind a right checksum is refused or harmless") {
-    const auto good = tissue::write_organ(small_organ());
+    const std::array good{tissue::write_organ(small_organ()),
+                          tissue::write_organ(quadratic_organ())};
     CHECK(rc::check([&good] {
-        auto bytes = good;
+        auto bytes = good[*rc::gen::inRange<std::size_t>(0, good.size())];
         const int changes = *rc::gen::inRange(1, 5);
         for (int i = 0; i < changes; ++i) {
             const auto at = *rc::gen::inRange<std::size_t>(12, bytes.size() - kHashSize);
@@ -246,11 +282,59 @@ TEST_CASE("baked organ: a bed in a tetrahedron that is not there is refused") {
           std::string::npos);
 }
 
-TEST_CASE("baked organ: a file of a newer version is refused by its number") {
+TEST_CASE("baked organ: a file of another version is refused by its number") {
     auto bytes = tissue::write_organ(small_organ());
-    bytes[8] = std::byte{3};
+    for (const int version : {4, 1}) {
+        bytes[8] = static_cast<std::byte>(version);
+        sign(bytes);
+        CHECK(refusal(bytes).find("version " + std::to_string(version) +
+                                  ", this build reads versions 2 and 3") != std::string::npos);
+    }
+}
+
+TEST_CASE("baked organ: a file of version 2 is read as order 1") {
+    auto organ = small_organ();
+    auto bytes = tissue::write_organ(organ);
+    bytes[8] = std::byte{2};
+    bytes.erase(bytes.begin() + kOrderAt, bytes.begin() + kOrderAt + 4);
     sign(bytes);
-    CHECK(refusal(bytes).find("version 3, this build reads version 2") != std::string::npos);
+    const auto read = tissue::read_organ(bytes);
+    CHECK(read.order == 1);
+    CHECK(read.tip_radius_max_m == organ.tip_radius_max_m);
+    CHECK(tissue::write_organ(read) == tissue::write_organ(organ)); // all else is there
+}
+
+TEST_CASE("baked organ: rows of order 2 may name nodes on edges, frames and tets may not") {
+    const auto organ = quadratic_organ();
+    const auto read = tissue::read_organ(tissue::write_organ(organ));
+    CHECK(read.order == 2);
+    CHECK(read.surface.row_node == organ.surface.row_node);
+    CHECK(read.surface.row_weight == organ.surface.row_weight);
+
+    auto beyond = organ;
+    beyond.surface.row_node.back() = 9; // the last edge
+    CHECK_NOTHROW(tissue::read_organ(tissue::write_organ(beyond)));
+    beyond.surface.row_node.back() = 10;
+    CHECK(refusal(tissue::write_organ(beyond)).find("node of a row 10 is out of range") !=
+          std::string::npos);
+    beyond = organ;
+    beyond.surface.frame_node[1][2] = 4;
+    CHECK(refusal(tissue::write_organ(beyond)).find("node of a frame 4 is out of range") !=
+          std::string::npos);
+    beyond = small_organ(); // order 1 has no nodes on edges
+    beyond.surface.row_node.back() = 4;
+    CHECK(refusal(tissue::write_organ(beyond)).find("node of a row 4 is out of range") !=
+          std::string::npos);
+}
+
+TEST_CASE("baked organ: an order that there is not is refused at its byte") {
+    for (const int order : {0, 3, -1}) {
+        auto organ = small_organ();
+        organ.order = order;
+        const std::string why = refusal(tissue::write_organ(organ));
+        CHECK(why.find("byte " + std::to_string(kOrderAt) + ": order " + std::to_string(order) +
+                       " of a soft body") != std::string::npos);
+    }
 }
 
 TEST_CASE("baked organ: a rigid body has a surface and nothing else") {
@@ -266,4 +350,8 @@ TEST_CASE("baked organ: a rigid body has a surface and nothing else") {
     wall.mesh.rest_m = {{0, 0, 0}};
     wall.anchored = {0};
     CHECK(refusal(tissue::write_organ(wall)).find("rigid") != std::string::npos);
+
+    wall = read;
+    wall.order = 2;
+    CHECK(refusal(tissue::write_organ(wall)).find("order 2 of a rigid body") != std::string::npos);
 }

@@ -1,8 +1,11 @@
-// The file format of a baked organ, version 2. All little endian, doubles as IEEE 754 bits:
+// The file format of a baked organ, version 3. All little endian, doubles as IEEE 754 bits:
 //   magic "TROCORGN", u32 version, then the fields of BakedOrgan in the order of write_fields(),
 //   each list as u64 count and its items, then u64 FNV-1a of everything before it.
-// One list of fields serves both directions, so that they cannot drift apart.
+// Version 2 has no order, which is 1. One list of fields serves both directions and both versions,
+// so that they cannot drift apart.
 #include "tissue/mesh/baked_organ.h"
+
+#include "tissue/mesh/quadratic_mesh.h"
 
 #include <bit>
 #include <cmath>
@@ -14,7 +17,7 @@ namespace tissue {
 namespace {
 
 constexpr std::string_view kMagic = "TROCORGN";
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3, kOldestVersion = 2;
 constexpr std::size_t kHashSize = 8;
 constexpr std::size_t kBedSampleSize = 4 + 5 * 8;
 
@@ -141,12 +144,13 @@ class Reader {
 
 /// `start` (may be null) receives where each list begins, for messages.
 struct ListStarts {
-    std::size_t anchored = 0, bed = 0, tets = 0, triangles = 0, neighbours = 0, row_start = 0,
-                row_node = 0, frame_node = 0, sizes = 0;
+    std::size_t order = 0, anchored = 0, bed = 0, tets = 0, triangles = 0, neighbours = 0,
+                row_start = 0, row_node = 0, frame_node = 0, sizes = 0;
 };
 
-/// The order of the file. `Organ` is const for a Writer.
-template <class Stream, class Organ> ListStarts fields(Stream& s, Organ& o) {
+/// The fields as they follow in the file. `Organ` is const for a Writer.
+template <class Stream, class Organ>
+ListStarts fields(Stream& s, Organ& o, std::uint32_t version = kVersion) {
     ListStarts at;
     const auto here = [&] {
         if constexpr (std::same_as<Stream, Reader>) {
@@ -157,6 +161,10 @@ template <class Stream, class Organ> ListStarts fields(Stream& s, Organ& o) {
     };
     s.list(o.name);
     s.item(o.rigid);
+    at.order = here();
+    if (version > kOldestVersion) {
+        s.item(o.order);
+    }
     s.item(o.tip_radius_max_m);
     s.item(o.recipe_hash);
     s.item(o.material.young_pa);
@@ -226,13 +234,17 @@ void check_rows(const ContactSurface& s, std::uint32_t nodes, const ListStarts& 
         check_size(s.row_node.size(), s.row_start.back(), "nodes of the rows", at.row_node);
     }
     check_indices(std::span(&s.row_node, 1), 0U, nodes, "node of a row", at.row_node);
-    check_indices(s.frame_node, 0U, nodes, "node of a frame", at.frame_node);
 }
 
 /// Everything that code reading the organ indexes with or relies on.
 void check_organ(const BakedOrgan& o, const ListStarts& at) {
     const auto nodes = static_cast<std::uint32_t>(o.mesh.rest_m.size());
     const ContactSurface& s = o.surface;
+    if (o.order != 1 && (o.order != 2 || o.rigid)) {
+        fail("order " + std::to_string(o.order) + " of " + (o.rigid ? "a rigid" : "a soft") +
+                 " body; known are 1, and 2 of soft ones",
+             at.order);
+    }
     const auto vertices = static_cast<std::uint32_t>(s.rest_m.size());
     check_indices(o.mesh.tets, 0U, nodes, "node of a tetrahedron", at.tets);
     check_size(o.anchored.size(), nodes, "anchored", at.anchored);
@@ -261,7 +273,9 @@ void check_organ(const BakedOrgan& o, const ListStarts& at) {
     check_size(s.thickness_m.size(), rows, "thicknesses", at.sizes);
     check_size(s.mesh_term_n_m.size(), rows, "normal mesh terms", at.sizes);
     check_size(s.mesh_term_t_m.size(), rows, "tangential mesh terms", at.sizes);
-    check_rows(s, nodes, at);
+    check_indices(s.frame_node, 0U, nodes, "node of a frame", at.frame_node);
+    check_rows(s, o.order == 1 ? nodes : static_cast<std::uint32_t>(quadratic_node_count(o.mesh)),
+               at);
 }
 
 } // namespace
@@ -285,9 +299,9 @@ BakedOrgan read_organ(std::span<const std::byte> bytes) {
         }
     }
     const auto version = head.integer<std::uint32_t>();
-    if (version != kVersion) {
-        fail("version " + std::to_string(version) + ", this build reads version " +
-                 std::to_string(kVersion),
+    if (version < kOldestVersion || version > kVersion) {
+        fail("version " + std::to_string(version) + ", this build reads versions " +
+                 std::to_string(kOldestVersion) + " and " + std::to_string(kVersion),
              kMagic.size());
     }
     if (bytes.size() - head.at() < kHashSize) {
@@ -300,7 +314,7 @@ BakedOrgan read_organ(std::span<const std::byte> bytes) {
 
     Reader body(bytes.first(end), head.at());
     BakedOrgan organ;
-    const ListStarts at = fields(body, organ);
+    const ListStarts at = fields(body, organ, version);
     if (body.at() != end) {
         fail("more bytes than the organ has", body.at());
     }

@@ -12,11 +12,14 @@
 
 namespace tissue {
 
+/// With order 2 the rows of the surface name nodes of quadratic_mesh(mesh), its frames corners; a
+/// node on an edge is anchored where both ends are, as linear_statics.h has it; no mesh terms.
 struct BakedOrgan {
     std::string name;
     bool rigid = false;                 // scenery: a surface without tetrahedra
+    int order = 1;                      // of the shapes the rows are for; 2: see below
     TetMesh mesh;                       // empty if rigid
-    std::vector<std::uint8_t> anchored; // per node, 1 = fixed in place
+    std::vector<std::uint8_t> anchored; // per node of `mesh`, 1 = fixed in place
     std::vector<BedSample> bed;         // what holds it elastically, by tet
     ContactSurface surface;             // rigid: rows and terms empty
     Material material;                  // default; a scene may name another
@@ -24,11 +27,12 @@ struct BakedOrgan {
     std::uint64_t recipe_hash = 0;      // of the recipe and the baking code's version
 };
 
-/// Little endian, versioned, with a checksum at the end; the same organ gives the same bytes.
+/// Little endian, versioned, with a checksum at the end; the same organ gives the same bytes. Reads
+/// files of the version before, too, which are all of order 1.
 std::vector<std::byte> write_organ(const BakedOrgan& organ);
 
 /// Throws std::invalid_argument saying what is wrong and at which byte: truncated, wrong magic,
-/// newer version, checksum, index out of range, non-finite number. Safe on hostile bytes.
+/// other version, checksum, index out of range, non-finite number. Safe on hostile bytes.
 BakedOrgan read_organ(std::span<const std::byte> bytes);
 
 } // namespace tissue

@@ -14,6 +14,19 @@ Edge edge_of(std::uint32_t a, std::uint32_t b) noexcept {
     return {std::min(a, b), std::max(a, b)};
 }
 
+// Ascending, each once.
+std::vector<Edge> edges_of(const TetMesh& mesh) {
+    std::vector<Edge> edges;
+    edges.reserve(6 * mesh.tets.size());
+    for (const Tet& t : mesh.tets) {
+        for (const auto& [a, b] : kEdge)
+            edges.push_back(edge_of(t[a], t[b]));
+    }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    return edges;
+}
+
 } // namespace
 
 std::array<double, 6> triangle_shapes(const glm::dvec3& l) noexcept {
@@ -23,15 +36,7 @@ std::array<double, 6> triangle_shapes(const glm::dvec3& l) noexcept {
 
 QuadraticMesh quadratic_mesh(const TetMesh& mesh) {
     check_mesh(mesh);
-    std::vector<Edge> edges;
-    edges.reserve(6 * mesh.tets.size());
-    for (const Tet& t : mesh.tets) {
-        for (const auto& [a, b] : kEdge)
-            edges.push_back(edge_of(t[a], t[b]));
-    }
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-
+    const std::vector<Edge> edges = edges_of(mesh);
     QuadraticMesh quadratic{mesh.rest_m, {}};
     for (const auto& [a, b] : edges)
         quadratic.rest_m.push_back(0.5 * (mesh.rest_m[a] + mesh.rest_m[b]));
@@ -46,6 +51,10 @@ QuadraticMesh quadratic_mesh(const TetMesh& mesh) {
         quadratic.tets.push_back(q);
     }
     return quadratic;
+}
+
+std::size_t quadratic_node_count(const TetMesh& mesh) {
+    return mesh.rest_m.size() + edges_of(mesh).size();
 }
 
 std::vector<Triangle6> boundary_triangles(const QuadraticMesh& mesh) {

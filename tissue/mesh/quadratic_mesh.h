@@ -31,6 +31,9 @@ struct QuadraticMesh {
 /// by ascending (lower, higher) corner. Throws std::invalid_argument as check_mesh() does.
 QuadraticMesh quadratic_mesh(const TetMesh& mesh);
 
+/// How many nodes that has. Only the numbers of the corners are looked at.
+std::size_t quadratic_node_count(const TetMesh& mesh);
+
 /// Outward triangles of the boundary, in the order of boundary_triangles().
 std::vector<Triangle6> boundary_triangles(const QuadraticMesh& mesh);
 
