@@ -138,6 +138,8 @@ void add_study(CLI::App& app, int& exit_code) {
     add_levels(*c);
     add_failures_study(*c, exit_code);
     add_scaling_study(*c, exit_code);
+    add_solid_studies(*c, exit_code);
+    add_solid_charts(*c);
     add_study_contact(*c);
     add_why_study(*c);
 }
