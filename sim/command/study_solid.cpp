@@ -62,6 +62,7 @@ nlohmann::ordered_json json_of(const SolidResult& r) {
             {"nonlinear_residual", number(r.worst_residual())},
             {"newton_iterations", r.newton_iterations()},
             {"linear_iterations", r.linear_iterations()},
+            {"substeps", r.substeps()},
             {"ms_per_step", {{"mean", t.mean}, {"p50", t.p50}, {"p99", t.p99}, {"max", t.max}}},
             {"steps", r.row.size()},
             {"settled", r.settled},

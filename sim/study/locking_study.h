@@ -19,11 +19,9 @@ struct LockingCurve {
 struct LockingOptions {
     SolidCase bar; // statics; model, element and cells are those of the curves
     std::vector<double> poissons{0.3, 0.35, 0.4, 0.45, 0.47, 0.49, 0.495, 0.499};
-    std::vector<LockingCurve> curves{{"corotated", {10, 2, 2}},
-                                     {"corotated", {20, 4, 4}},
-                                     {"corotated", {40, 8, 8}},
-                                     {"quadratic", {10, 2, 2}},
-                                     {"quadratic", {15, 3, 3}}};
+    std::vector<LockingCurve> curves{{"corotated", {10, 2, 2}}, {"corotated", {20, 4, 4}},
+                                     {"corotated", {40, 8, 8}}, {"quadratic", {10, 2, 2}},
+                                     {"quadratic", {14, 2, 2}}, {"quadratic", {15, 3, 3}}};
     std::array<int, 3> reference_cells{10, 2, 2}; // and twice and three times as many each way
     LockingOptions();
 };

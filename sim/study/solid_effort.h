@@ -10,7 +10,8 @@ inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Not a number: the model does not know it.
 struct SolidEffort {
-    int newton = 0, linear = 0;        // iterations; of Newton: substeps of the baselines
+    int newton = 0, linear = 0;        // iterations
+    int substeps = 0;                  // of the baselines
     double linear_residual = kUnknown; // |A x - b| / |b|
     double residual = kUnknown;        // of all equations, relative to all forces that take part
     bool converged = true;             // as the model itself means it

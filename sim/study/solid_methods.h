@@ -137,7 +137,7 @@ template <typename Model> struct BaselineMethod {
     }
     SolidEffort step() {
         const tissue::BaselineReport report = tissue::step(model, load_n, dt_s, scratch, state);
-        return {.newton = report.substeps,
+        return {.substeps = report.substeps,
                 .residual = report.relative_residual,
                 .converged = report.finite};
     }

@@ -151,7 +151,7 @@ template <typename Method> struct Bench {
         SolidEffort sum{.converged = false};
         for (int i = 0, still = 0; i < kMostSteps && still < kStill; ++i) {
             const SolidEffort effort = method->step();
-            sum.newton += effort.newton;
+            sum.substeps += effort.substeps;
             sum.residual = effort.residual;
             if (!effort.converged || !sane(method->position_m()))
                 return sum;
@@ -218,6 +218,13 @@ int SolidResult::newton_iterations() const {
     return sum;
 }
 
+int SolidResult::substeps() const {
+    int sum = 0;
+    for (const SolidRow& r : row)
+        sum += r.effort.substeps;
+    return sum;
+}
+
 int SolidResult::linear_iterations() const {
     int sum = 0;
     for (const SolidRow& r : row)
@@ -266,13 +273,13 @@ SolidResult run_solid(const SolidCase& work) {
 }
 
 std::string solid_csv(const SolidResult& result) {
-    std::string out = "t_s,force_n,depth_m,tip_x_m,tip_y_m,tip_z_m,ms,newton,linear,"
+    std::string out = "t_s,force_n,depth_m,tip_x_m,tip_y_m,tip_z_m,ms,newton,linear,substeps,"
                       "linear_residual,residual\n";
     for (const SolidRow& r : result.row)
-        out += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.6g},{},{},{},{}\n", r.t_s,
-                           r.force_n, r.depth_m, r.tip_m.x, r.tip_m.y, r.tip_m.z, r.ms,
-                           r.effort.newton, r.effort.linear, cell(r.effort.linear_residual),
-                           cell(r.effort.residual));
+        out += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.6g},{},{},{},{},{}\n",
+                           r.t_s, r.force_n, r.depth_m, r.tip_m.x, r.tip_m.y, r.tip_m.z, r.ms,
+                           r.effort.newton, r.effort.linear, r.effort.substeps,
+                           cell(r.effort.linear_residual), cell(r.effort.residual));
     return out;
 }
 

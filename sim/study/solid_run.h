@@ -33,6 +33,7 @@ struct SolidResult {
     SolidTimes ms() const;
     int newton_iterations() const; // in all
     int linear_iterations() const;
+    int substeps() const; // of the baselines
     // the worst of the rows that know it; not a number if none does
     double worst_residual() const;
     double worst_linear_residual() const;
@@ -45,8 +46,8 @@ struct SolidResult {
 /// soonest, until the tip stays where it is, to 0.1 %, for 100 steps. Throws as check(SolidCase).
 SolidResult run_solid(const SolidCase& work);
 
-/// t_s,force_n,depth_m,tip_x_m,tip_y_m,tip_z_m,ms,newton,linear,linear_residual,residual: a line
-/// per row; what the model does not know stays empty.
+/// t_s,force_n,depth_m,tip_x_m,tip_y_m,tip_z_m,ms,newton,linear,substeps,linear_residual,residual:
+/// a line per row; what the model does not know stays empty.
 std::string solid_csv(const SolidResult& result);
 
 } // namespace sim

@@ -39,6 +39,7 @@ struct TradeoffReference {
     double order = 0.0;             // of convergence at rest
     double left_percent = 0.0;      // from the finest mesh at rest to the limit
     double fall_left_percent = 0.0; // the same on the way, at most, of its greatest displacement
+    std::size_t lowest = 0;         // steps until it first hangs lowest
     bool regular = false;           // the meshes show an order; else the finest is taken
 };
 
@@ -48,8 +49,10 @@ struct TradeoffRow {
     std::size_t nodes = 0, tets = 0;
     SolidTimes ms;
     double rest_percent = kUnknown; // of the tip at rest, relative to the reference's
-    double fall_percent = kUnknown; // the worst of all steps, relative to the reference's greatest
-    double fall_own_percent = kUnknown; // relative to the reference's in the same step
+    // of the tip until the reference first hangs lowest, the worst step, relative to the
+    // reference's greatest displacement, and to where the reference is in that step
+    double fall_percent = kUnknown, fall_own_percent = kUnknown;
+    double swing_percent = kUnknown; // of all steps, relative to its greatest displacement
     double linear_residual = kUnknown, residual = kUnknown; // the worst of all steps
     double factor_ms = kUnknown, solve_ms = kUnknown; // CHOLMOD, of the same matrix: quadratic only
     std::string failure;
@@ -61,7 +64,10 @@ struct TradeoffStudy {
     std::vector<std::pair<std::string, std::string>> gap; // peer, why it is missing
 };
 
-/// Errors of a way, the last of `rest_m` being where it settled (not a number: it did not).
+/// Steps until the displacement is greatest for the first time.
+std::size_t first_lowest(std::span<const glm::dvec3> way_m);
+
+/// Errors of a way and of where it settled (not a number: it did not).
 void judge(const TradeoffReference& reference, std::span<const glm::dvec3> fall_m,
            const glm::dvec3& rest_m, TradeoffRow& row);
 

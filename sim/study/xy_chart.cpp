@@ -92,6 +92,10 @@ std::string mark_svg(const XySeries& s, double x, double y) {
         return fmt::format("<path d=\"M{:.1f} {:.1f} l5.5 5.5 l-5.5 5.5 l-5.5 -5.5 z\" "
                            "fill=\"{}\"/>\n",
                            x, y - 5.5, c);
+    case XyMark::ring:
+        return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"7\" fill=\"none\" "
+                           "stroke=\"{}\" stroke-width=\"2\"/>\n",
+                           x, y, c);
     case XyMark::cross:
         return cross_svg(x, y, c);
     case XyMark::none:
@@ -137,14 +141,24 @@ std::string line_svg(const XySeries& s, const std::string& places) {
                        places, colour_of(s), s.dashed ? " stroke-dasharray=\"6 4\"" : "");
 }
 
+// The line ends before what failed and begins again after it.
 std::string series_svg(const Frame& f, const XySeries& s) {
-    std::string places, marks;
+    std::string places, lines, marks;
+    const auto end_line = [&] {
+        if (s.line && !places.empty())
+            lines += line_svg(s, places);
+        places.clear();
+    };
     for (const auto& point : s.point) {
         const Place p = f.place(point);
-        places += fmt::format("{:.1f},{:.1f} ", p.x, p.y);
         marks += p.failed ? cross_svg(p.x, p.y, colour_of(s)) : mark_svg(s, p.x, p.y);
+        if (p.failed)
+            end_line();
+        else
+            places += fmt::format("{:.1f},{:.1f} ", p.x, p.y);
     }
-    return (s.line ? line_svg(s, places) : "") + marks;
+    end_line();
+    return lines + marks;
 }
 
 std::string legend_svg(const Frame& f) {

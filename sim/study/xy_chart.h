@@ -16,15 +16,15 @@ struct XyAxis {
     std::vector<double> ticks{};  // labelled; empty: 1, 2, 5 of decades, or five to ten round steps
 };
 
-enum class XyMark { none, disc, square, triangle, diamond, cross };
+enum class XyMark { none, disc, square, triangle, diamond, ring, cross };
 
 struct XySeries {
     std::string name; // empty: not in the legend
     int colour = 0;   // ten there are
     XyMark mark = XyMark::disc;
     bool line = true, dashed = false;
-    /// x, y. Where y is no number or beyond its axis: a cross at the upper border. Below the axis:
-    /// a mark at its lower border.
+    /// x, y. Where y is no number or beyond its axis: a cross at the upper border, and no line.
+    /// Below: a mark at its lower border.
     std::vector<std::pair<double, double>> point{};
 };
 

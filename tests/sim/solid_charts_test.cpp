@@ -69,10 +69,12 @@ TEST_CASE("chart: what failed is a cross at the upper border, what is small stan
     sim::XyChart c{.title = "a<b",
                    .x = {.title = "x", .low = 0.0, .high = 10.0},
                    .y = {.title = "y", .low = 0.1, .high = 10.0, .logarithmic = true}};
-    c.series = {{.name = "s", .point = {{0.0, 1.0}, {5.0, NAN}, {10.0, 1e-3}}}};
+    c.series = {{.name = "s", .point = {{0.0, 1.0}, {2.5, 10.0}, {5.0, NAN}, {10.0, 1e-3}}}};
     const std::string svg = sim::xy_svg(c);
     // 80..700 wide; the title alone leaves 50..550 high, and 1 is half way from 0.1 to 10
-    CHECK(svg.find("points=\"80.0,300.0 390.0,50.0 700.0,550.0 \"") != std::string::npos);
+    // and the line is broken where it failed
+    CHECK(svg.find("points=\"80.0,300.0 235.0,50.0 \"") != std::string::npos);
+    CHECK(svg.find("points=\"700.0,550.0 \"") != std::string::npos);
     CHECK(svg.find("x1=\"385.0\" y1=\"45.0\" x2=\"395.0\" y2=\"55.0\"") != std::string::npos);
     CHECK(svg.find("failed, or beyond the axis") != std::string::npos);
     CHECK(svg.find("a&lt;b") != std::string::npos);

@@ -48,16 +48,19 @@ struct Folder {
 
 } // namespace
 
-TEST_CASE("tradeoff: a way is as wrong as its worst step, a way that ends early is not judged") {
+TEST_CASE("tradeoff: a fall is as wrong as its worst step, a way that ends early is not judged") {
     sim::TradeoffReference reference;
     reference.rest_m = {0.0, -0.1, 0.0};
     reference.fall_m = {{0.0, -0.01, 0.0}, {0.0, -0.2, 0.0}, {0.0, -0.1, 0.0}};
-    const std::vector<dvec3> fall{{0.0, -0.012, 0.0}, {0.003, -0.2, 0.004}, {0.0, -0.1, 0.0}};
+    reference.lowest = sim::first_lowest(reference.fall_m);
+    CHECK(reference.lowest == 2);
+    const std::vector<dvec3> fall{{0.0, -0.012, 0.0}, {0.003, -0.2, 0.004}, {0.0, -0.12, 0.0}};
     sim::TradeoffRow row;
     sim::judge(reference, fall, {0.0, -0.1, 0.002}, row);
     CHECK(std::abs(row.rest_percent - 2.0) < 1e-9);
     CHECK(std::abs(row.fall_percent - 2.5) < 1e-9);      // 5 mm of 200
     CHECK(std::abs(row.fall_own_percent - 20.0) < 1e-9); // 2 mm of 10
+    CHECK(std::abs(row.swing_percent - 10.0) < 1e-9);    // 20 mm of 200, on the way back
     sim::TradeoffRow ended;
     sim::judge(reference, std::span(fall).first(2), dvec3{NAN}, ended);
     CHECK(std::isnan(ended.fall_percent));
@@ -107,6 +110,7 @@ TEST_CASE("tradeoff: a peer is judged as our models are, and what it mumbles is 
     sim::TradeoffStudy study;
     study.reference.rest_m = {0.0, -0.1, 0.0};
     study.reference.fall_m = {{0.0, -0.1, 0.0}};
+    study.reference.lowest = 1;
     folder.program("mujoco_peer",
                    R"({"versions": {"mujoco": "4.0.0"}, "nodes": 12, "tets": 12,
                        "tip_m": [0, -0.05, 0], "tip_each_step_m": [[0, -0.09, 0]],
