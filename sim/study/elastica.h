@@ -12,8 +12,8 @@ struct Elastica {
     double angle_rad = 0.0;  // of the end
 };
 
-/// `alpha` = P L^2/(E I), from 0 to 1000. Exact to rounding. Throws std::invalid_argument naming
-/// another alpha.
+/// `alpha` = P L^2/(E I), from 0 to 1000. To 1e-12 of the length. Throws std::invalid_argument
+/// naming another alpha.
 Elastica elastica(double alpha);
 
 } // namespace sim

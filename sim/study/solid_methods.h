@@ -1,13 +1,13 @@
 // sim/study/solid_methods.h
 // Every tissue model as a study sees it: one shape, so that all do the same work. Called by
 // solid_run.cpp only; one thread.
-//   XMethod(work, body)   at rest, unloaded
-//   position_m(), velocity_mps()  of all nodes; a punch moves its own, kinetic damping stops all
-//   set_load_n(force)     in all, on the loaded face, from now on
-//   step()                one step of dt
-//   audit(before)         untimed: the residual that the step left, of all its equations
-//   settle()              to rest under the load, if kStatics; others come to rest step by step
-//   push_n()              of the tissue on the punch
+//   XMethod(work, body)           at rest, unloaded
+//   position_m(), velocity_mps()  of all nodes; a punch moves its own
+//   set_load_n(force)             in all, on the loaded face, from now on
+//   step()                        one step of dt
+//   audit(before)                 untimed: the residual that the step left, of all its equations
+//   settle()                      to rest under the load, if kStatics; others get there by steps
+//   push_n()                      of the tissue on the punch
 #pragma once
 
 #include "sim/study/solid_case.h"

@@ -43,7 +43,8 @@ struct SolidResult {
 
 /// Steps end with the first that is not finite or does not converge; the row before is the last.
 /// Statics of models that have none: steps of dt_s, damped by mass as much as lets them rest
-/// soonest, until the tip stays where it is, to 0.1 %, for 100 steps. Throws as check(SolidCase).
+/// soonest, until the tip stays where it is, to 0.1 %, for 100 steps (under a punch it does so at
+/// once: just 100 steps). Throws as check(SolidCase).
 SolidResult run_solid(const SolidCase& work);
 
 /// t_s,force_n,depth_m,tip_x_m,tip_y_m,tip_z_m,ms,newton,linear,substeps,linear_residual,residual:
