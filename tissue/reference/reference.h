@@ -21,6 +21,7 @@
 #pragma once
 
 #include "tissue/material/prony.h"
+#include "tissue/mesh/elastic_bed.h"
 #include "tissue/mesh/quadratic_mesh.h"
 #include "tissue/solver/sparse_factor.h"
 
@@ -50,6 +51,7 @@ struct ReferenceModel {
     std::vector<std::array<std::int32_t, 55>> block; // where each tet's blocks go, see the .cpp
     std::vector<double> mass_kg;                     // on `all`
     std::vector<double> weight_n;                    // M g, per component
+    std::vector<double> bed_npm; // of the springs that hold it, on `all`; empty: none
 };
 
 struct ReferenceState {
@@ -68,12 +70,14 @@ struct ReferenceSystem {
     std::vector<Symmetric> shear_pa{}; // M of point q of tet e at 4 e + q; empty: elastic
 };
 
-/// `held`: a flag byte per node, may be empty. Throws std::invalid_argument naming the tet, node or
-/// value: bad material, a tet that is not positive at a quadrature point, a size that does not fit,
-/// a node of no tet.
+/// `held`: a flag byte per node, may be empty. `bed`: its samples belong to the tets of `mesh`;
+/// what is elastic below includes it. Throws std::invalid_argument naming the tet, node or value:
+/// bad material, a tet that is not positive at a quadrature point, a size that does not fit, a node
+/// of no tet, a sample of a tet that the mesh lacks.
 ReferenceModel make_reference(const QuadraticMesh& mesh, const Material& material, Law law,
                               std::span<const std::uint8_t> held,
-                              const glm::dvec3& gravity_mps2 = glm::dvec3{0.0});
+                              const glm::dvec3& gravity_mps2 = glm::dvec3{0.0},
+                              std::span<const BedSample> bed = {});
 ReferenceState rest_state(const ReferenceModel& model);
 ReferenceSystem make_system(const ReferenceModel& model);
 

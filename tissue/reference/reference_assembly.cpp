@@ -43,8 +43,25 @@ double density_jpm3(const ReferenceModel& model, std::span<const Symmetric> shea
 
 } // namespace
 
+std::vector<double> bed_force_n(const ReferenceModel& model, std::span<const dvec3> moved_m) {
+    std::vector<double> moved, force(model.unknown.size(), 0.0);
+    if (model.bed_npm.empty())
+        return force;
+    for (const dvec3& u : moved_m)
+        moved.insert(moved.end(), {u.x, u.y, u.z});
+    multiply(model.all, model.bed_npm, moved, force);
+    return force;
+}
+
+double half_work_j(std::span<const double> force_n, std::span<const dvec3> moved_m) noexcept {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < force_n.size(); ++i)
+        sum += 0.5 * force_n[i] * moved_m[i / 3][static_cast<int>(i % 3)];
+    return sum;
+}
+
 void linearize_at(const ReferenceModel& model, std::span<const dvec3> moved_m,
-                  ReferenceSystem& system, bool projected) noexcept {
+                  ReferenceSystem& system, bool projected) {
     std::fill(system.internal_n.begin(), system.internal_n.end(), 0.0);
     std::fill(system.stiffness.begin(), system.stiffness.end(), 0.0);
     system.energy_j = 0.0;
@@ -76,10 +93,16 @@ void linearize_at(const ReferenceModel& model, std::span<const dvec3> moved_m,
                 add_block(model, e, a, b, k, blocks[k], system.stiffness);
         }
     }
+    const std::vector<double> bed_n = bed_force_n(model, moved_m);
+    system.energy_j += half_work_j(bed_n, moved_m);
+    for (std::size_t i = 0; i < bed_n.size(); ++i)
+        system.internal_n[i] += bed_n[i];
+    for (std::size_t k = 0; k < model.bed_npm.size(); ++k)
+        system.stiffness[k] += model.bed_npm[k];
 }
 
 double energy_at_j(const ReferenceModel& model, std::span<const Symmetric> shear_pa,
-                   std::span<const dvec3> moved_m) noexcept {
+                   std::span<const dvec3> moved_m) {
     double sum = 0.0;
     for (std::size_t e = 0; e < model.points.size(); ++e) {
         for (std::size_t q = 0; q < 4; ++q) {
@@ -88,6 +111,8 @@ double energy_at_j(const ReferenceModel& model, std::span<const Symmetric> shear
             sum += point.volume_m3 * density_jpm3(model, shear_pa, e, q, F);
         }
     }
+    if (!model.bed_npm.empty())
+        sum += half_work_j(bed_force_n(model, moved_m), moved_m);
     return sum;
 }
 

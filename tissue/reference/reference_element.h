@@ -38,9 +38,13 @@ inline void add_block(const ReferenceModel& model, std::size_t tet, std::size_t 
 
 /// linearize() and elastic_energy_j() at displacements, under M of each point (none: elastic).
 void linearize_at(const ReferenceModel& model, std::span<const glm::dvec3> moved_m,
-                  ReferenceSystem& system, bool projected) noexcept;
+                  ReferenceSystem& system, bool projected);
 double energy_at_j(const ReferenceModel& model, std::span<const Symmetric> shear_pa,
-                   std::span<const glm::dvec3> moved_m) noexcept;
+                   std::span<const glm::dvec3> moved_m);
+
+/// Force of the bed per component, 0 without one; and its energy.
+std::vector<double> bed_force_n(const ReferenceModel& model, std::span<const glm::dvec3> moved_m);
+double half_work_j(std::span<const double> force_n, std::span<const glm::dvec3> moved_m) noexcept;
 
 /// P of point q of a tet under its M.
 inline glm::dmat3 piola_at_pa(const ReferenceModel& model, std::span<const Symmetric> shear_pa,

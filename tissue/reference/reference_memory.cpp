@@ -20,7 +20,7 @@ std::span<const Symmetric> at(std::span<const Symmetric> memory, std::size_t ter
 }
 
 void add_forces(const ReferenceModel& model, std::span<const Symmetric> shear_pa,
-                std::span<const dvec3> moved_m, std::span<dvec3> force_n) noexcept {
+                std::span<const dvec3> moved_m, std::span<dvec3> force_n) {
     std::fill(force_n.begin(), force_n.end(), dvec3{0.0});
     for (std::size_t e = 0; e < model.points.size(); ++e) {
         for (std::size_t q = 0; q < 4; ++q) {
@@ -31,6 +31,9 @@ void add_forces(const ReferenceModel& model, std::span<const Symmetric> shear_pa
                 force_n[model.mesh.tets[e][a]] += P * point.gradient_1pm[a];
         }
     }
+    const std::vector<double> bed_n = bed_force_n(model, moved_m);
+    for (std::size_t i = 0; i < bed_n.size(); ++i)
+        force_n[i / 3][static_cast<int>(i % 3)] += bed_n[i];
 }
 
 std::vector<Symmetric> shears_pa(const ReferenceModel& model, const PronyStep& prony,
@@ -107,7 +110,7 @@ double stored_energy_j(const ReferenceModel& model, const ReferenceState& state)
     check_memory(model, state.memory);
     const std::vector<dvec3> moved = displacements_m(model, state.position_m);
     const PronyStep at_once = prony_step(model.material, 0.0);
-    double sum = 0.0;
+    double sum = half_work_j(bed_force_n(model, moved), moved);
     for (std::size_t e = 0; e < model.points.size(); ++e) {
         for (std::size_t q = 0; q < 4; ++q) {
             const ReferencePoint& point = model.points[e][q];

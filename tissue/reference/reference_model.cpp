@@ -160,10 +160,32 @@ void add_mass_and_weight(ReferenceModel& m) {
     multiply(m.all, m.mass_kg, acceleration_mps2, m.weight_n);
 }
 
+// sum over the samples of E stiffness N_a N_b, times I
+void add_bed(std::span<const BedSample> bed, ReferenceModel& m) {
+    if (bed.empty())
+        return;
+    m.bed_npm.assign(m.all.row.size(), 0.0);
+    for (const BedSample& sample : bed) {
+        if (sample.tet >= m.mesh.tets.size()) {
+            throw std::invalid_argument("bed: a sample names tet " + std::to_string(sample.tet) +
+                                        " of " + std::to_string(m.mesh.tets.size()) +
+                                        ": tets count from 0");
+        }
+        const auto N = shape_values(sample.weight);
+        const double spring_npm = m.material.young_pa * sample.stiffness_m;
+        std::size_t k = 0;
+        for (std::size_t a = 0; a < 10; ++a) {
+            for (std::size_t b = 0; b <= a; ++b, ++k)
+                add_block(m, sample.tet, a, b, k, dmat3(spring_npm * N[a] * N[b]), m.bed_npm);
+        }
+    }
+}
+
 } // namespace
 
 ReferenceModel make_reference(const QuadraticMesh& mesh, const Material& material, Law law,
-                              std::span<const std::uint8_t> held, const dvec3& gravity_mps2) {
+                              std::span<const std::uint8_t> held, const dvec3& gravity_mps2,
+                              std::span<const BedSample> bed) {
     if (!held.empty() && held.size() != mesh.rest_m.size()) {
         throw std::invalid_argument("flags of held components for " + std::to_string(held.size()) +
                                     " nodes: the mesh has " + std::to_string(mesh.rest_m.size()));
@@ -183,6 +205,7 @@ ReferenceModel make_reference(const QuadraticMesh& mesh, const Material& materia
     add_pattern(m);
     number_unknowns(held, m);
     add_mass_and_weight(m);
+    add_bed(bed, m);
     return m;
 }
 

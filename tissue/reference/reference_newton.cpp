@@ -34,24 +34,34 @@ struct Search {
     ReferenceSystem& system;
     const NewtonOptions& options;
     std::span<const double> inertia_npm;
+    const TipContact* contact;
     std::vector<dvec3> start_m, now_m, trial_m;
     double volume_m3 = 0.0;
-    std::vector<double> force_n, way_m, inertia_n, residual_n, step_m, product_n;
+    std::vector<double> force_n, way_m, inertia_n, contact_n, residual_n, step_m, product_n;
     std::vector<double> unknown; // per unknown
     NewtonReport report;
 
     Search(const ReferenceModel& m, ReferenceSystem& s, const NewtonOptions& o,
-           std::span<const double> inertia, const std::vector<dvec3>& x)
-        : model(m), system(s), options(o), inertia_npm(inertia), start_m(x), now_m(x), trial_m(x) {
+           const Potential& potential, const std::vector<dvec3>& x)
+        : model(m), system(s), options(o), inertia_npm(potential.inertia_npm),
+          contact(potential.contact), start_m(x), now_m(x), trial_m(x) {
         for (const auto& tet : m.points) {
             for (const ReferencePoint& p : tet)
                 volume_m3 += p.volume_m3;
         }
-        for (auto* v : {&force_n, &way_m, &inertia_n, &residual_n, &step_m, &product_n})
+        for (auto* v : {&force_n, &way_m, &inertia_n, &contact_n, &residual_n, &step_m, &product_n})
             v->assign(m.unknown.size(), 0.0);
         unknown.assign(static_cast<std::size_t>(m.unknowns), 0.0);
     }
 };
+
+// K and all forces at `now`.
+void linearize_now(Search& s, bool projected) {
+    linearize_at(s.model, s.now_m, s.system, projected);
+    if (s.contact != nullptr) {
+        linearize_contact(s.model, *s.contact, s.now_m, projected, s.contact_n, s.system.stiffness);
+    }
+}
 
 // d and B d at `x`.
 void measure(Search& s, std::span<const dvec3> x) noexcept {
@@ -69,15 +79,16 @@ struct Value {
 };
 
 // Pi at `x`, and how much of it is rounding.
-Value potential_at(Search& s, std::span<const dvec3> x) noexcept {
-    constexpr double kSummed = 1e-13; // of each of the three parts
+Value potential_at(Search& s, std::span<const dvec3> x) {
+    constexpr double kSummed = 1e-13; // of each part
     constexpr double kPoint = 1e-15;  // of mu: neo-Hooke's energy is a difference of such numbers
     const double elastic_j = energy_at_j(s.model, s.system.shear_pa, x);
     measure(s, x);
     const double kinetic_j = 0.5 * product_of(s.way_m, s.inertia_n);
     const double work_j = product_of(s.force_n, s.way_m);
-    return {elastic_j, kinetic_j - work_j,
-            kSummed * (elastic_j + kinetic_j + std::abs(work_j)) +
+    const double contact_j = s.contact ? contact_energy_j(s.model, *s.contact, x) : 0.0;
+    return {elastic_j, kinetic_j - work_j + contact_j,
+            kSummed * (elastic_j + kinetic_j + std::abs(work_j) + std::abs(contact_j)) +
                 kPoint * s.model.elasticity.mu_pa * s.volume_m3};
 }
 
@@ -86,16 +97,17 @@ double relative_residual(Search& s) noexcept {
     measure(s, s.now_m);
     double sum = 0.0;
     for (std::size_t i = 0; i < s.residual_n.size(); ++i) {
-        s.residual_n[i] = s.force_n[i] - s.system.internal_n[i] - s.inertia_n[i];
+        s.residual_n[i] = s.force_n[i] - s.system.internal_n[i] - s.contact_n[i] - s.inertia_n[i];
         if (s.model.unknown[i] >= 0)
             sum += s.residual_n[i] * s.residual_n[i];
     }
-    const double size = norm(s.force_n) + norm(s.system.internal_n) + norm(s.inertia_n);
+    const double size =
+        norm(s.force_n) + norm(s.system.internal_n) + norm(s.contact_n) + norm(s.inertia_n);
     return size == 0.0 ? 0.0 : std::sqrt(sum) / size; // not a number stays so
 }
 
 // K + B of the unknowns; with projected tangents if it is not positive definite otherwise.
-bool factor_tangent(Search& s) noexcept {
+bool factor_tangent(Search& s) {
     const auto attempt = [&] {
         for (std::size_t k = 0; k < s.system.matrix.size(); ++k) {
             const std::int32_t from = s.model.free_source[k];
@@ -108,7 +120,7 @@ bool factor_tangent(Search& s) noexcept {
     if (attempt())
         return true;
     ++s.report.projected;
-    linearize_at(s.model, s.now_m, s.system, true);
+    linearize_now(s, true);
     return attempt();
 }
 
@@ -133,7 +145,7 @@ void look_at(Search& s, double share) noexcept {
 enum class Descent { real, within_rounding, none };
 
 // Armijo's rule along step_m.
-Descent go_down(Search& s) noexcept {
+Descent go_down(Search& s) {
     constexpr double kDescent = 1e-4; // of the promised decrease
     constexpr int kHalvings = 30;
     const double slope_j = product_of(s.residual_n, s.step_m); // > 0: positive definite
@@ -161,7 +173,7 @@ bool carry_held(Search& s, std::span<const dvec3> held_m) {
     }
     if (std::all_of(way_m.begin(), way_m.end(), [](double w) { return w == 0.0; }))
         return true;
-    linearize_at(s.model, s.now_m, s.system, false);
+    linearize_now(s, false);
     if (!factor_tangent(s))
         return false;
     multiply(s.model.all, s.system.stiffness, way_m, s.residual_n);
@@ -181,12 +193,12 @@ bool carry_held(Search& s, std::span<const dvec3> held_m) {
 }
 
 // True at an equilibrium: to the tolerance, or to rounding where the tolerance lies below it.
-bool converge(Search& s) noexcept {
+bool converge(Search& s) {
     constexpr double kProgress = 0.5; // a Newton step that is not rounding does far better
     double last = std::numeric_limits<double>::infinity();
     Descent descent = Descent::real;
     for (int i = 0;; ++i) {
-        linearize_at(s.model, s.now_m, s.system, false);
+        linearize_now(s, false);
         const double residual = relative_residual(s);
         s.report.relative_residual = residual;
         s.report.energy_j = s.system.energy_j;
@@ -210,10 +222,12 @@ bool converge(Search& s) noexcept {
 NewtonReport find_least(const ReferenceModel& model, const Potential& potential,
                         std::span<const dvec3> target_m, const NewtonOptions& options,
                         ReferenceSystem& system, std::vector<dvec3>& moved_m) {
-    Search s(model, system, options, potential.inertia_npm, moved_m);
+    Search s(model, system, options, potential, moved_m);
     // d = 0 at the start, so that f_int alone is what balances there
-    linearize_at(model, moved_m, system, false);
-    const std::vector<double> force_at_start = system.internal_n;
+    linearize_now(s, false);
+    std::vector<double> force_at_start = system.internal_n;
+    for (std::size_t i = 0; i < force_at_start.size(); ++i)
+        force_at_start[i] += s.contact_n[i];
     std::vector<dvec3> held_m = moved_m;
 
     const double least_part = std::ldexp(1.0, -options.max_halvings);

@@ -1,10 +1,10 @@
 // tissue/reference/reference_newton.h
 // The least of an (incremental) potential, for statics and for one implicit step alike. Internal to
 // the reference solver.
-//   Pi(x) = E(x) + d.B d/2 - f.d,  d = x - x_start
+//   Pi(x) = E(x) + C(x) + d.B d/2 - f.d,  d = x - x_start, C: contact with a tip, if there is one
 #pragma once
 
-#include "tissue/reference/reference.h"
+#include "tissue/reference/tip_contact.h"
 
 namespace tissue {
 
@@ -12,6 +12,7 @@ namespace tissue {
 struct Potential {
     std::span<const double> force_n;
     std::span<const double> inertia_npm;
+    const TipContact* contact = nullptr;
 };
 
 /// From `moved_m`, the displacements of x_start, to the least of Pi with the held components of
