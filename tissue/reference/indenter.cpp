@@ -86,7 +86,7 @@ std::vector<dvec3> foreseen(const ReferenceModel& model, const std::vector<dvec3
     std::vector<dvec3> next = now;
     for (std::size_t i = 0; i < next.size(); ++i)
         next[i] += ratio * (now[i] - before[i]);
-    return std::isfinite(energy_at_j(model, next)) ? next : now;
+    return std::isfinite(energy_at_j(model, {}, next)) ? next : now;
 }
 
 } // namespace

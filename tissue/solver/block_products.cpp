@@ -32,29 +32,57 @@ V all(float value) noexcept {
 struct Tet {
     const QuadraticGroup& group;
     const QuadraticTangent& tangent;
+    const QuadraticShear* memory; // null: elastic
     int lane;
     float factor;
 
     V inverse(int q, int k) const noexcept { return all(group.gradient_single_1pm[q][k][lane]); }
     V at(int q, int k) const noexcept { return all(tangent.point[q][k][lane]); }
+    V remembered(int q, int k) const noexcept { return all(memory->point[q][k][lane]); }
     V scaled(int q, int k) const noexcept { return all(factor * tangent.point[q][k][lane]); }
 };
 
-V dot9(const Tet& tet, int q, int first, const V* b) noexcept {
-    V s0 = hn::Mul(tet.at(q, first), b[0]), s1 = hn::Mul(tet.at(q, first + 1), b[1]),
-      s2 = hn::Mul(tet.at(q, first + 2), b[2]);
+// a : b, a(k) a number of the tet.
+template <typename Entry> V dot9(const Entry& a, const V* b) noexcept {
+    V s0 = hn::Mul(a(0), b[0]), s1 = hn::Mul(a(1), b[1]), s2 = hn::Mul(a(2), b[2]);
     for (int k = 3; k < 9; k += 3) {
-        s0 = hn::MulAdd(tet.at(q, first + k), b[k], s0);
-        s1 = hn::MulAdd(tet.at(q, first + k + 1), b[k + 1], s1);
-        s2 = hn::MulAdd(tet.at(q, first + k + 2), b[k + 2], s2);
+        s0 = hn::MulAdd(a(k), b[k], s0);
+        s1 = hn::MulAdd(a(k + 1), b[k + 1], s1);
+        s2 = hn::MulAdd(a(k + 2), b[k + 2], s2);
     }
     return hn::Add(hn::Add(s0, s1), s2);
 }
 
+// dF M, M in the order of Symmetric.
+void times_memory(const Tet& tet, int q, const V* dF, V* out) noexcept {
+    constexpr std::array<std::array<int, 3>, 3> kPlace{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}}};
+    for (int k = 0; k < 3; ++k) {
+        const auto M = [&](int row) {
+            return tet.remembered(q, QuadraticShear::kM + kPlace[row][k]);
+        };
+        for (int r = 0; r < 3; ++r) {
+            out[3 * k + r] =
+                hn::MulAdd(dF[6 + r], M(2), hn::MulAdd(dF[3 + r], M(1), hn::Mul(dF[r], M(0))));
+        }
+    }
+}
+
 // dP from dF = grad[3 k + r]; C is linear in F, so dC is what each of two columns adds.
-void stress(const Tet& tet, int q, const V* dF, V* dP) noexcept {
+// With a memory, F M is for F where it is not a part of C, as in quadratic_points.cpp.
+template <bool kMemory> void stress(const Tet& tet, int q, const V* dF, V* dP) noexcept {
     constexpr int kF = QuadraticTangent::kF, kC = QuadraticTangent::kC;
-    const V c = dot9(tet, q, kC, dF), f = dot9(tet, q, kF, dF);
+    const auto C = [&](int k) { return tet.at(q, kC + k); };
+    const auto T = [&](int k) {
+        if constexpr (kMemory)
+            return tet.remembered(q, QuadraticShear::kFM + k);
+        else
+            return tet.at(q, kF + k);
+    };
+    V dFM[9];
+    if constexpr (kMemory)
+        times_memory(tet, q, dF, dFM);
+    const V* dT = kMemory ? dFM : dF;
+    const V c = dot9(C, dF), f = dot9(T, dF);
     const V mixed = tet.scaled(q, QuadraticTangent::kMixed);
     const V of_C = hn::MulAdd(mixed, f, hn::Mul(tet.scaled(q, QuadraticTangent::kSquare), c));
     const V of_F = hn::Mul(mixed, c);
@@ -66,8 +94,8 @@ void stress(const Tet& tet, int q, const V* dF, V* dP) noexcept {
         const int l = 3 * ((k + 1) % 3), m = 3 * ((k + 2) % 3);
         for (int r = 0; r < 3; ++r) {
             const int s = (r + 1) % 3, t = (r + 2) % 3, i = 3 * k + r;
-            V sum = hn::MulAdd(shear, dF[i], hn::Mul(of_F, tet.at(q, kF + i)));
-            sum = hn::MulAdd(of_C, tet.at(q, kC + i), sum);
+            V sum = hn::MulAdd(shear, dT[i], hn::Mul(of_F, T(i)));
+            sum = hn::MulAdd(of_C, C(i), sum);
             V turn = hn::MulAdd(bent[l + s], tet.at(q, kF + m + t),
                                 hn::Mul(bent[m + t], tet.at(q, kF + l + s)));
             turn = hn::NegMulAdd(bent[l + t], tet.at(q, kF + m + s), turn);
@@ -83,7 +111,7 @@ struct Nodes {
 };
 
 // One tet, columns [i, i + Lanes).
-void add_tet(const Tet& tet, const Nodes& nodes, int i) noexcept {
+template <bool kMemory> void add_tet(const Tet& tet, const Nodes& nodes, int i) noexcept {
     const auto load = [&](int node, int r) {
         return hn::Load(kTag, nodes.from[node] + kLanes * r + i);
     };
@@ -112,7 +140,7 @@ void add_tet(const Tet& tet, const Nodes& nodes, int i) noexcept {
                     h[3], tet.inverse(q, 6 + k),
                     hn::MulAdd(h[2], tet.inverse(q, 3 + k), hn::Mul(h[1], tet.inverse(q, k))));
         }
-        stress(tet, q, dF, dP);
+        stress<kMemory>(tet, q, dF, dP);
         for (int r = 0; r < 3; ++r) {
             V t[4];
             for (int c = 1; c < 4; ++c)
@@ -168,11 +196,13 @@ void product(const QuadraticModel& model, const T* S, const Line* x, Line* y) no
 
 } // namespace
 
-void tangent_columns(const QuadraticModel& model, const QuadraticTangent* tangent, float factor,
+void tangent_columns(const QuadraticModel& model, const QuadraticTangents& tangents, float factor,
                      const ColumnLine* p, ColumnLine* q) {
+    const bool memory = !tangents.shear.empty();
     const int step = static_cast<int>(hn::Lanes(kTag));
     for (std::size_t e = 0; e < model.mesh.tets.size(); ++e) {
-        const Tet tet{model.groups[e / kLanes], tangent[e / kLanes], static_cast<int>(e % kLanes),
+        const Tet tet{model.groups[e / kLanes], tangents.elastic[e / kLanes],
+                      memory ? &tangents.shear[e / kLanes] : nullptr, static_cast<int>(e % kLanes),
                       factor};
         Nodes nodes;
         for (int a = 0; a < 10; ++a) {
@@ -180,8 +210,12 @@ void tangent_columns(const QuadraticModel& model, const QuadraticTangent* tangen
             nodes.from[a] = p[at].lane.data();
             nodes.to[a] = q[at].lane.data();
         }
-        for (int i = 0; i < kLanes; i += step)
-            add_tet(tet, nodes, i);
+        for (int i = 0; i < kLanes; i += step) {
+            if (memory)
+                add_tet<true>(tet, nodes, i);
+            else
+                add_tet<false>(tet, nodes, i);
+        }
     }
 }
 
@@ -204,10 +238,10 @@ HWY_EXPORT(tangent_columns);
 HWY_EXPORT(scalar_columns_single);
 HWY_EXPORT(scalar_columns_double);
 
-void add_tangent_product(const QuadraticModel& model, std::span<const QuadraticTangent> tangent,
+void add_tangent_product(const QuadraticModel& model, const QuadraticTangents& tangents,
                          float factor, std::span<const ColumnLine> p,
                          std::span<ColumnLine> q) noexcept {
-    HWY_DYNAMIC_DISPATCH(tangent_columns)(model, tangent.data(), factor, p.data(), q.data());
+    HWY_DYNAMIC_DISPATCH(tangent_columns)(model, tangents, factor, p.data(), q.data());
 }
 
 void scalar_product(const QuadraticModel& model, std::span<const float> S,

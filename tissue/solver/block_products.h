@@ -9,7 +9,7 @@
 namespace tissue {
 
 /// q += factor K p, sums at anchored nodes too; blocks as in BlockScratch.
-void add_tangent_product(const QuadraticModel& model, std::span<const QuadraticTangent> tangent,
+void add_tangent_product(const QuadraticModel& model, const QuadraticTangents& tangents,
                          float factor, std::span<const ColumnLine> p,
                          std::span<ColumnLine> q) noexcept;
 

@@ -19,7 +19,7 @@ void von_mises_pa(const CorotatedModel& model, std::span<const glm::dvec3> posit
 
 double peak_von_mises_pa(const QuadraticModel& model, const QuadraticSystem& system) noexcept {
     double peak2 = 0.0;
-    for (const QuadraticTangent& tangent : system.tangent) {
+    for (const QuadraticTangent& tangent : system.tangent.elastic) {
         for (const auto& point : tangent.point) {
             for (std::size_t lane = 0; lane < QuadraticGroup::kLanes; ++lane) {
                 glm::dmat3 F;
