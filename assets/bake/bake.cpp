@@ -4,6 +4,7 @@
 #include "assets/bake/fit.h"
 #include "assets/bake/local_terms.h"
 #include "assets/bake/nearest.h"
+#include "assets/bake/quadratic.h"
 #include "assets/bake/remesh.h"
 #include "tissue/response/mesh_term.h"
 
@@ -18,8 +19,7 @@ namespace {
 
 constexpr double kMm = 1e-3;
 constexpr double kCellPerSkin = 0.6;   // sampling of the implicit body, of the skin's edge
-constexpr double kRadiiPerEdge = 1.8;  // boundary edges where the body is strongly curved
-constexpr double kShortestShare = 0.6; // and the shortest of them, of the edge
+constexpr double kShortestShare = 0.6; // of boundary edges where it is curved, of the edge
 constexpr double kBoxCreaseDeg = 40.0; // a box has edges, an organ has none
 constexpr int kFitRounds = 20;         // the distance stops falling well before
 constexpr int kImproveSweeps = 4;
@@ -67,43 +67,27 @@ SizeAt even(double edge_m) {
     return [edge_m](const glm::dvec3&) { return edge_m; };
 }
 
-struct Surfaces {
-    Surface skin, boundary;
-};
-
-Surfaces liver_surfaces(const Recipe& recipe, const LobedShape& shape, PhaseClock& clock) {
-    clock.begin("skin");
-    const double skin_m = kMm * recipe.skin_mm, edge_m = kMm * recipe.edge_mm;
+Surface lobed_skin(const Recipe& recipe, const LobedShape& shape) {
+    const double skin_m = kMm * recipe.skin_mm;
     const auto bounds = lobed_bounds_m(shape);
     const Surface raw = polygonise(lobed_field(shape), bounds[0], bounds[1], kCellPerSkin * skin_m);
     require_good(raw, "the body of the recipe");
-    Surfaces s{.skin = remesh(raw, even(skin_m), {}), .boundary = {}};
-    require_good(s.skin, "the skin");
-
-    clock.begin("boundary");
-    const SizeAt size =
-        with_spots(curvature_size(s.skin, edge_m, kRadiiPerEdge, kShortestShare), recipe.fine);
-    s.boundary = remesh(s.skin, size, {});
-    fit_to_skin(s.skin, kFitRounds, 180.0, s.boundary);
-    require_good(s.boundary, "the boundary of the tetrahedra");
-    return s;
+    return remesh(raw, even(skin_m), {});
 }
 
-Surfaces box_surfaces(const Recipe& recipe, const BoxShape& shape, PhaseClock& clock) {
-    clock.begin("skin");
-    const glm::dvec3 size_m = kMm * shape.size_mm;
-    const double skin_m = kMm * recipe.skin_mm, edge_m = kMm * recipe.edge_mm;
-    Surfaces s{.skin =
-                   shape.skin_on_top_only ? box_top(size_m, skin_m) : box_surface(size_m, skin_m),
-               .boundary = {}};
-    if (!shape.cells) {
-        clock.begin("boundary");
-        const Surface start = box_surface(size_m, edge_m);
-        s.boundary =
-            remesh(start, with_spots(even(edge_m), recipe.fine), {.crease_deg = kBoxCreaseDeg});
-        require_good(s.boundary, "the boundary of the tetrahedra");
-    }
-    return s;
+Surface lobed_boundary(const Recipe& recipe, const Surface& skin) {
+    const double edge_m = kMm * recipe.edge_mm;
+    const SizeAt size = with_spots(
+        curvature_size(skin, edge_m, recipe.radii_per_edge, kShortestShare), recipe.fine);
+    Surface boundary = remesh(skin, size, {});
+    fit_to_skin(skin, kFitRounds, 180.0, boundary);
+    return boundary;
+}
+
+Surface box_boundary(const Recipe& recipe, const BoxShape& shape) {
+    const double edge_m = kMm * recipe.edge_mm;
+    return remesh(box_surface(kMm * shape.size_mm, edge_m), with_spots(even(edge_m), recipe.fine),
+                  {.crease_deg = kBoxCreaseDeg});
 }
 
 Surface scenery_surface(const Recipe& recipe) {
@@ -113,22 +97,32 @@ Surface scenery_surface(const Recipe& recipe) {
                             : ground_surface(std::get<GroundShape>(recipe.shape), skin_m);
 }
 
-// Without a boundary if the tetrahedra are made with the shape, not from it.
-Surfaces body_surfaces(const Recipe& recipe, PhaseClock& clock) {
-    if (const auto* lobed = std::get_if<LobedShape>(&recipe.shape)) {
-        return liver_surfaces(recipe, *lobed, clock);
-    }
-    if (const auto* box = std::get_if<BoxShape>(&recipe.shape)) {
-        return box_surfaces(recipe, *box, clock);
-    }
-    clock.begin("skin");
+Surface body_skin(const Recipe& recipe) {
     const double skin_m = kMm * recipe.skin_mm;
+    if (const auto* box = std::get_if<BoxShape>(&recipe.shape)) { // may be open
+        const glm::dvec3 size_m = kMm * box->size_mm;
+        return box->skin_on_top_only ? box_top(size_m, skin_m) : box_surface(size_m, skin_m);
+    }
+    const auto* lobed = std::get_if<LobedShape>(&recipe.shape);
     const auto* sheet = std::get_if<SheetShape>(&recipe.shape);
-    Surfaces s{.skin = sheet != nullptr ? sheet_surface(*sheet, skin_m)
-                                        : tube_surface(std::get<TubeShape>(recipe.shape), skin_m),
-               .boundary = {}};
-    require_good(s.skin, "the skin");
-    return s;
+    Surface skin = lobed != nullptr   ? lobed_skin(recipe, *lobed)
+                   : sheet != nullptr ? sheet_surface(*sheet, skin_m)
+                                      : tube_surface(std::get<TubeShape>(recipe.shape), skin_m);
+    require_good(skin, "the skin");
+    return skin;
+}
+
+// Empty if the tetrahedra are made with the shape, not from a boundary.
+Surface body_boundary(const Recipe& recipe, const Surface& skin, PhaseClock& clock) {
+    const auto* lobed = std::get_if<LobedShape>(&recipe.shape);
+    const auto* box = std::get_if<BoxShape>(&recipe.shape);
+    if (lobed == nullptr && (box == nullptr || box->cells)) {
+        return {};
+    }
+    clock.begin("boundary");
+    Surface boundary = lobed != nullptr ? lobed_boundary(recipe, skin) : box_boundary(recipe, *box);
+    require_good(boundary, "the boundary of the tetrahedra");
+    return boundary;
 }
 
 std::optional<tissue::TetMesh> regular_mesh(const Recipe& recipe) {
@@ -173,23 +167,27 @@ tissue::TetMesh make_mesh(const Recipe& recipe, const Surface& boundary, PhaseCl
     return std::move(*answer.mesh);
 }
 
-void measure(const Surfaces& s, const tissue::TetMesh& mesh, BakeReport& report) {
-    const Surface boundary{mesh.rest_m, tissue::boundary_triangles(mesh)};
-    const NearestOnSurface to_mesh(boundary), to_skin(s.skin);
+void measure(const Surface& skin, const Surface& boundary, const tissue::TetMesh& mesh,
+             BakeReport& report) {
+    const NearestOnSurface to_mesh(boundary), to_skin(skin);
     report.quality = tet_quality(mesh);
     report.mesh_volume_m3 = tissue::volume_m3(mesh, mesh.rest_m);
-    report.skin_to_mesh_m = sampled_hausdorff_m(s.skin, to_mesh);
-    if (check_surface(s.skin).open_edges == 0) { // an open skin covers only part of the mesh
-        report.skin_volume_m3 = volume_m3(s.skin);
+    report.skin_to_mesh_m = sampled_hausdorff_m(skin, to_mesh);
+    if (check_surface(skin).open_edges == 0) { // an open skin covers only part of the mesh
+        report.skin_volume_m3 = volume_m3(skin);
         report.mesh_to_skin_m = sampled_hausdorff_m(boundary, to_skin);
     }
 }
 
-/// FNV-1a over what decides the organ: text, overridden sizes, version of this program.
-std::uint64_t recipe_hash(const Recipe& recipe) {
+/// FNV-1a over what decides the organ: text, overridden sizes, order, version of this program.
+std::uint64_t recipe_hash(const Recipe& recipe, int order) {
     std::uint64_t hash = recipe.text_hash;
-    for (const std::uint64_t word : {kBakeVersion, std::bit_cast<std::uint64_t>(recipe.edge_mm),
-                                     std::bit_cast<std::uint64_t>(recipe.skin_mm)}) {
+    std::vector<std::uint64_t> words{kBakeVersion, std::bit_cast<std::uint64_t>(recipe.edge_mm),
+                                     std::bit_cast<std::uint64_t>(recipe.skin_mm)};
+    if (order != 1) {
+        words.push_back(static_cast<std::uint64_t>(order));
+    }
+    for (const std::uint64_t word : words) {
         for (int byte = 0; byte < 8; ++byte) {
             hash = (hash ^ (word >> (8 * byte) & 0xFF)) * 0x100000001B3ULL;
         }
@@ -197,48 +195,59 @@ std::uint64_t recipe_hash(const Recipe& recipe) {
     return hash;
 }
 
-} // namespace
-
-Baked bake(const Recipe& recipe, const BakeOptions& options) {
-    Baked baked;
-    PhaseClock clock(options, baked.report);
-    tissue::BakedOrgan& organ = baked.organ;
-    organ.name = recipe.name;
-    organ.material = recipe.material;
-    organ.tip_radius_max_m = kMm * recipe.tip_radius_max_mm;
-    organ.recipe_hash = recipe_hash(recipe);
-
-    if (is_rigid(recipe.kind)) {
-        clock.begin("skin");
-        const Surface skin = scenery_surface(recipe);
-        organ.rigid = true;
-        organ.surface.rest_m = skin.point_m;
-        organ.surface.triangles = skin.triangles;
-        organ.surface.neighbours = tissue::triangle_neighbours(skin.triangles);
-        clock.end();
-        return baked;
-    }
-
-    const Surfaces surfaces = body_surfaces(recipe, clock);
-    organ.mesh = make_mesh(recipe, surfaces.boundary, clock, options, baked.report);
-    make_anchors(recipe, organ);
-    baked.boundary = {organ.mesh.rest_m, tissue::boundary_triangles(organ.mesh)};
-
-    clock.begin("distances");
-    measure(surfaces, organ.mesh, baked.report);
-
+/// Rows and terms of the skin that is there.
+void add_response(const Recipe& recipe, const BakeOptions& options, PhaseClock& clock,
+                  tissue::BakedOrgan& organ) {
     clock.begin("footprints");
-    organ.surface.rest_m = surfaces.skin.point_m;
-    organ.surface.triangles = surfaces.skin.triangles;
-    organ.surface.neighbours = tissue::triangle_neighbours(surfaces.skin.triangles);
-    const tissue::FootprintOptions footprint{.tip_radius_max_m = organ.tip_radius_max_m};
+    const tissue::FootprintOptions footprint{.order = organ.order,
+                                             .tip_radius_max_m = organ.tip_radius_max_m};
     tissue::make_footprints(organ.mesh, organ.anchored, footprint, organ.surface);
+    if (organ.order != 1) {
+        return;
+    }
     clock.begin("mesh terms");
     tissue::make_mesh_terms(organ.mesh, organ.material.poisson, organ.anchored, footprint,
                             organ.surface, organ.bed, options.mesh_term_progress);
     if (is_slender(recipe.kind) || recipe.local_terms) {
         keep_terms_local(organ.material.poisson, organ.surface);
     }
+}
+
+} // namespace
+
+Baked bake(const Recipe& asked, const BakeOptions& options) {
+    Baked baked;
+    PhaseClock clock(options, baked.report);
+    tissue::BakedOrgan& organ = baked.organ;
+    organ.name = asked.name;
+    organ.order = options.order;
+    organ.material = asked.material;
+    organ.tip_radius_max_m = kMm * asked.tip_radius_max_mm;
+    organ.rigid = is_rigid(asked.kind);
+    if (organ.rigid && options.order != 1) {
+        throw Refused("scenery has no tetrahedra, so there are none with quadratic shapes");
+    }
+
+    clock.begin("skin");
+    const Surface skin = organ.rigid ? scenery_surface(asked) : body_skin(asked);
+    organ.surface.rest_m = skin.point_m;
+    organ.surface.triangles = skin.triangles;
+    organ.surface.neighbours = tissue::triangle_neighbours(skin.triangles);
+    const Recipe recipe = options.order == 2 ? quadratic_recipe(asked, skin) : asked;
+    organ.recipe_hash = recipe_hash(recipe, options.order);
+    if (organ.rigid) {
+        clock.end();
+        return baked;
+    }
+
+    baked.report.edge_mm = recipe.edge_mm;
+    organ.mesh =
+        make_mesh(recipe, body_boundary(recipe, skin, clock), clock, options, baked.report);
+    make_anchors(recipe, organ);
+    baked.boundary = {organ.mesh.rest_m, tissue::boundary_triangles(organ.mesh)};
+    clock.begin("distances");
+    measure(skin, baked.boundary, organ.mesh, baked.report);
+    add_response(recipe, options, clock, organ);
     clock.end();
     return baked;
 }

@@ -26,6 +26,7 @@ struct Phase {
 };
 
 struct BakeReport {
+    double edge_mm = 0.0; // asked of the tetrahedra; that of recipes with cells says nothing
     TetQuality quality;
     std::vector<TetAttempt> attempts;
     double skin_volume_m3 = 0.0; // 0: the skin is open
@@ -41,12 +42,13 @@ struct Baked {
 };
 
 struct BakeOptions {
-    double time_limit_s = 60.0;                   // of each attempt of TetGen
+    int order = 1;              // of the tetrahedra's shapes; 2: on those of quadratic_recipe()
+    double time_limit_s = 60.0; // of each attempt of TetGen
     std::function<void(const std::string&)> tell; // progress, one line each; may be empty
     void (*mesh_term_progress)(double share) = nullptr;
 };
 
-/// Throws RecipeError (nothing anchored) or Refused.
+/// Throws RecipeError (nothing anchored) or Refused. Skins of both orders are the same.
 Baked bake(const Recipe& recipe, const BakeOptions& options);
 
 /// The report as one JSON object.

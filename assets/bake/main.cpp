@@ -20,6 +20,7 @@ enum ExitCode { kDone = 0, kRefused = 1, kBadInput = 2 };
 struct Arguments {
     std::string recipe, out, report, obj;
     double edge_mm = 0.0, skin_mm = 0.0, time_limit_s = 60.0;
+    bool quadratic = false;
 };
 
 std::string read_file(const std::string& name) {
@@ -57,14 +58,20 @@ void show_share(double share) {
 
 void run(const Arguments& a) {
     bake::Recipe recipe = bake::parse_recipe(read_file(a.recipe), a.recipe);
-    recipe.edge_mm = a.edge_mm > 0.0 ? a.edge_mm : recipe.edge_mm;
+    if (a.edge_mm > 0.0 && a.quadratic) {
+        recipe.quadratic_edge_mm = a.edge_mm;
+    } else if (a.edge_mm > 0.0) {
+        recipe.edge_mm = a.edge_mm;
+    }
     recipe.skin_mm = a.skin_mm > 0.0 ? a.skin_mm : recipe.skin_mm;
     const auto tell = [&](const std::string& line) {
         fmt::print("{}: {}\n", recipe.name, line);
         std::fflush(stdout);
     };
-    const bake::Baked baked = bake::bake(
-        recipe, {.time_limit_s = a.time_limit_s, .tell = tell, .mesh_term_progress = show_share});
+    const bake::Baked baked = bake::bake(recipe, {.order = a.quadratic ? 2 : 1,
+                                                  .time_limit_s = a.time_limit_s,
+                                                  .tell = tell,
+                                                  .mesh_term_progress = show_share});
     const std::string report = report_json(recipe, baked);
     fmt::print("{}", report);
     if (!a.report.empty()) {
@@ -92,6 +99,8 @@ int main(int argc, char** argv) {
     app.add_option("--out", a.out, "baked organ to write")->required()->type_name("FILE.organ");
     app.add_option("--report", a.report, "write the report as JSON")->type_name("FILE.json");
     app.add_option("--obj", a.obj, "write skin and boundary for looking at")->type_name("FILE.obj");
+    app.add_flag("--quadratic", a.quadratic,
+                 "coarser tetrahedra with quadratic shapes, for the tier that does not lock");
     app.add_option("--edge", a.edge_mm, "edge of the tetrahedra instead of the recipe's, mm")
         ->check(CLI::Range(1.0, 100.0));
     app.add_option("--skin", a.skin_mm, "edge of the skin instead of the recipe's, mm")

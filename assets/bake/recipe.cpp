@@ -33,6 +33,17 @@ void read_fine(const Table& top, Recipe& recipe) {
     }
 }
 
+void read_quadratic(const Table& top, Recipe& recipe) {
+    const auto* box = std::get_if<BoxShape>(&recipe.shape);
+    if (recipe.kind == Kind::sheet || (box != nullptr && box->cells)) {
+        if (top.has("quadratic_cells")) {
+            recipe.quadratic_cells = read_cells(top, "quadratic_cells");
+        }
+    } else if (top.has("quadratic_edge_mm")) {
+        recipe.quadratic_edge_mm = top.number("quadratic_edge_mm", 1.0, 100.0);
+    }
+}
+
 tissue::Material read_material(const Table& t) {
     tissue::Material m;
     m.young_pa = t.number("young_pa", 1.0, 1e9, m.young_pa);
@@ -68,6 +79,7 @@ Recipe parse_recipe(const std::string& text, const std::string& file_name) {
     if (!is_rigid(recipe.kind)) {
         recipe.tip_radius_max_mm = top.number("tip_radius_max_mm", 0.1, 20.0, 3.0);
         read_anchors(top, recipe);
+        read_quadratic(top, recipe);
     }
     if (recipe.kind == Kind::liver || recipe.kind == Kind::box) { // by TetGen
         recipe.quality_ratio = top.number("quality_ratio", 1.05, 10.0, recipe.quality_ratio);

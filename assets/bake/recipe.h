@@ -52,8 +52,9 @@ using AnyShape = std::variant<LobedShape, VaultShape, BoxShape, GroundShape, She
 struct Recipe {
     std::string name;
     Kind kind = Kind::liver;
-    double edge_mm = 13.0; // of the tetrahedra
-    double skin_mm = 4.0;  // of the surface that is touched and drawn
+    double edge_mm = 13.0;       // of the tetrahedra
+    double radii_per_edge = 1.8; // edges where the body is strongly curved; no key of its own
+    double skin_mm = 4.0;        // of the surface that is touched and drawn
     double tip_radius_max_mm = 3.0;
     double quality_ratio = 1.2;         // TetGen: circumradius over shortest edge
     double quality_dihedral_deg = 15.0; // TetGen: smallest dihedral angle
@@ -61,7 +62,9 @@ struct Recipe {
     std::vector<AnchorSphere> anchor_spheres;
     std::vector<AnchorBox> anchor_boxes;
     double hold_length_mm = 0.0; // L of the elastic bed in the anchors; 0: their nodes are fixed
-    bool local_terms = false;    // mesh terms without what is a swing of the whole body
+    std::optional<double> quadratic_edge_mm; // of the tetrahedra if their shapes are quadratic
+    std::optional<std::array<int, 3>> quadratic_cells; // the same of boxes and sheets with cells
+    bool local_terms = false; // mesh terms without what is a swing of the whole body
     std::vector<FineSpot> fine;
     tissue::Material material;
     std::uint64_t text_hash = 0; // FNV-1a of the text

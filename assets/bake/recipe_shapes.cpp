@@ -55,22 +55,10 @@ VaultShape read_vault(const Table& top) {
             .seed = noise.seed};
 }
 
-std::array<int, 3> read_cells(const Table& top) {
-    const glm::dvec3 n = top.vector("cells", 1.0, 100.0);
-    std::array<int, 3> cells{};
-    for (int d = 0; d < 3; ++d) {
-        cells[d] = static_cast<int>(n[d]);
-        if (cells[d] != n[d]) {
-            top.refuse("cells", "three whole numbers from 1 to 100");
-        }
-    }
-    return cells;
-}
-
 BoxShape read_box(const Table& top) {
     BoxShape box{.size_mm = top.vector("size_mm", 1.0, 1e3), .cells = {}};
     if (top.has("cells")) {
-        box.cells = read_cells(top);
+        box.cells = read_cells(top, "cells");
     }
     box.skin_on_top_only = top.word("skin", {"top", "whole"}, "top") == "top";
     return box;
@@ -114,7 +102,7 @@ SheetShape read_sheet(const Table& top) {
     SheetShape sheet{.centre_mm = top.vector("centre_mm", -1e3, 1e3),
                      .size_mm = top.vector("size_mm", 0.5, 1e3),
                      .tilt_deg = top.vector("tilt_deg", -180.0, 180.0, glm::dvec3{0.0}),
-                     .cells = read_cells(top),
+                     .cells = read_cells(top, "cells"),
                      .bulge_mm = top.number("bulge_mm", 0.0, 100.0, 0.0),
                      .noise_mm = noise.noise_mm,
                      .noise_wavelength_mm = noise.wavelength_mm,
@@ -159,6 +147,18 @@ TubeShape read_tube(const Table& top) {
 }
 
 } // namespace
+
+std::array<int, 3> read_cells(const Table& top, const char* key) {
+    const glm::dvec3 n = top.vector(key, 1.0, 100.0);
+    std::array<int, 3> cells{};
+    for (int d = 0; d < 3; ++d) {
+        cells[d] = static_cast<int>(n[d]);
+        if (cells[d] != n[d]) {
+            top.refuse(key, "three whole numbers from 1 to 100");
+        }
+    }
+    return cells;
+}
 
 std::pair<Kind, AnyShape> read_shape(const Table& top) {
     const std::string kind = top.word("kind", {"liver", "wall", "box", "ground", "sheet", "tube"});

@@ -12,4 +12,7 @@ namespace bake {
 /// What `kind` and the shape's own keys say; throws RecipeError.
 std::pair<Kind, AnyShape> read_shape(const Table& top);
 
+/// Three whole numbers from 1 to 100 under `key`.
+std::array<int, 3> read_cells(const Table& top, const char* key);
+
 } // namespace bake

@@ -36,7 +36,8 @@ std::string report_json(const Recipe& recipe, const Baked& baked) {
     if (!organ.rigid) {
         const auto anchored =
             static_cast<std::size_t>(std::count(organ.anchored.begin(), organ.anchored.end(), 1));
-        j["edge_mm"] = recipe.edge_mm;
+        j["order"] = organ.order;
+        j["edge_mm"] = r.edge_mm;
         j["nodes"] = organ.mesh.rest_m.size();
         j["tets"] = organ.mesh.tets.size();
         j["anchored_nodes"] = anchored;

@@ -1,10 +1,10 @@
 #include "assets/bake/import/import.h"
 
+#include "assets/bake/edge_for_nodes.h"
 #include "assets/bake/import/clean.h"
 #include "assets/bake/import/grouping.h"
 #include "assets/bake/import/organ_body.h"
 #include "assets/bake/import/read_surface.h"
-#include "assets/bake/import/size_field.h"
 
 #include <bit>
 
@@ -60,7 +60,7 @@ double choose_edge_m(const Pieces& pieces, const ImportOptions& options) {
     return edge_for_nodes(volume, area, kNodes);
 }
 
-/// Said, not refused: a thin body needs short edges.
+/// Said, not refused: a thin body needs short edges, and may have no coarse ones.
 void judge_size(const ImportedBody& body, Notes& notes) {
     const std::size_t nodes = body.organ.mesh.rest_m.size();
     if (nodes > kMostNodes) {
@@ -68,6 +68,9 @@ void judge_size(const ImportedBody& body, Notes& notes) {
             "{} has {} nodes: with more than some {}, three tools at once may take it out of real "
             "time; a larger --edge gives fewer where the body is not thin",
             body.organ.name, nodes, kMostNodes));
+    }
+    if (!body.no_quadratic.empty()) {
+        notes.problems.push_back(body.no_quadratic);
     }
 }
 

@@ -10,6 +10,7 @@
 #include "assets/bake/import/soup.h"
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 namespace bake {
@@ -32,8 +33,17 @@ struct ImportOptions {
     std::function<void(const std::string&)> tell;
 };
 
+/// The same skin on coarser tetrahedra, with rows for quadratic shapes (assets/bake/quadratic.h).
+struct QuadraticBody {
+    tissue::BakedOrgan organ;
+    TetQuality quality;
+    double edge_m = 0.0, volume_m3 = 0.0, boundary_distance_m = 0.0;
+};
+
 struct ImportedBody {
     tissue::BakedOrgan organ;
+    std::optional<QuadraticBody> quadratic; // none if rigid, or for the reason that follows
+    std::string no_quadratic;
     Surface given;    // what was to be met: closed and repaired
     Surface boundary; // of the tetrahedra; empty if rigid
     TetQuality quality;

@@ -4,6 +4,7 @@
 #include "assets/bake/import/import.h"
 #include "assets/bake/import/picture.h"
 #include "assets/bake/import/staging.h"
+#include "assets/bake/quadratic.h"
 
 #include <CLI/CLI.hpp>
 #include <csignal>
@@ -108,6 +109,12 @@ ImportOptions make_options(const Arguments& a) {
     return o;
 }
 
+void write_organ(const fs::path& folder, const tissue::BakedOrgan& organ, const char* ending) {
+    const auto bytes = tissue::write_organ(organ);
+    write_whole(folder / (organ.name + ending),
+                {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
 /// In the child: reads, computes, writes into the staged folder; returns what to print.
 std::vector<std::byte> work(const Arguments& a, const ImportOptions& options,
                             const fs::path& folder) {
@@ -121,9 +128,10 @@ std::vector<std::byte> work(const Arguments& a, const ImportOptions& options,
     try {
         const Imported imported = import_surface(bytes, options);
         for (const auto& body : imported.bodies) {
-            const auto organ = tissue::write_organ(body.organ);
-            write_whole(folder / (body.organ.name + ".organ"),
-                        {reinterpret_cast<const char*>(organ.data()), organ.size()});
+            write_organ(folder, body.organ, ".organ");
+            if (body.quadratic) {
+                write_organ(folder, body.quadratic->organ, kQuadraticEnding);
+            }
         }
         write_whole(folder / "report.json", import_json(imported, options, false));
         write_whole(folder / "report.txt", import_text(imported, options));

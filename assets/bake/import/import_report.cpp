@@ -1,5 +1,6 @@
 // What import says about a surface and its organs, as JSON and as text. Called by import_main.
 #include "assets/bake/import/import.h"
+#include "assets/bake/quadratic.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,6 +42,20 @@ Total total_of(const Imported& imported) {
     return t;
 }
 
+Json quadratic_json(const QuadraticBody& b, double given_m3) {
+    Json j;
+    j["file"] = b.organ.name + kQuadraticEnding;
+    j["hash"] = fmt::format("{:016x}", b.organ.recipe_hash);
+    j["edge_mm"] = 1e3 * b.edge_m;
+    j["mean_edge_mm"] = 1e3 * b.quality.mean_edge_m;
+    j["nodes"] = b.organ.mesh.rest_m.size(); // corners
+    j["tets"] = b.organ.mesh.tets.size();
+    j["volume_change_percent"] = 100.0 * (b.volume_m3 / given_m3 - 1.0);
+    j["boundary_hausdorff_m"] = b.boundary_distance_m;
+    j["worst_dihedral_deg"] = b.quality.worst_dihedral_deg;
+    return j;
+}
+
 Json body_json(const ImportedBody& b, bool with_times) {
     Json j;
     j["name"] = b.organ.name;
@@ -65,6 +80,9 @@ Json body_json(const ImportedBody& b, bool with_times) {
     j["worst_dihedral_deg"] = b.quality.worst_dihedral_deg;
     j["largest_dihedral_deg"] = b.quality.largest_dihedral_deg;
     j["aspect"] = {{"worst", b.quality.worst_aspect}, {"mean", b.quality.mean_aspect}};
+    if (b.quadratic) {
+        j["quadratic"] = quadratic_json(*b.quadratic, b.given_m3);
+    }
     for (const auto& a : b.attempts) {
         j["attempts"].push_back({{"what", a.what}, {"outcome", a.outcome}});
         if (with_times) {
@@ -106,6 +124,9 @@ std::string import_json(const Imported& imported, const ImportOptions& options, 
     }
     for (const auto& b : imported.bodies) {
         j["files"].push_back(b.organ.name + ".organ");
+        if (b.quadratic) {
+            j["files"].push_back(b.organ.name + kQuadraticEnding);
+        }
         j["body"].push_back(body_json(b, with_times));
     }
     j["files"].push_back("report.json");
@@ -149,6 +170,15 @@ std::string import_text(const Imported& imported, const ImportOptions& options) 
                             "{:.1f}\n",
                             b.quality.worst_dihedral_deg, b.quality.largest_dihedral_deg,
                             b.quality.worst_aspect, b.quality.mean_aspect);
+        if (b.quadratic) {
+            const auto& q = *b.quadratic;
+            text += fmt::format(
+                "  {}{}: the same skin for quadratic shapes, {} corners, {} tetrahedra of {:.1f} "
+                "mm, {:.2f} mm away, dihedral angles from {:.1f} degrees\n",
+                q.organ.name, kQuadraticEnding, q.organ.mesh.rest_m.size(),
+                q.organ.mesh.tets.size(), 1e3 * q.edge_m, 1e3 * q.boundary_distance_m,
+                q.quality.worst_dihedral_deg);
+        }
         for (const auto& a : b.attempts) {
             text += a.outcome == "done" ? "" : fmt::format("  {}: {}\n", a.what, a.outcome);
         }

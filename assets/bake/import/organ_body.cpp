@@ -1,10 +1,12 @@
 #include "assets/bake/import/organ_body.h"
 
+#include "assets/bake/edge_for_nodes.h"
 #include "assets/bake/import/boundary.h"
 #include "assets/bake/import/distance.h"
 #include "assets/bake/import/improve.h"
 #include "assets/bake/import/size_field.h"
 #include "assets/bake/import/skin.h"
+#include "assets/bake/quadratic.h"
 #include "tissue/response/mesh_term.h"
 
 #include <algorithm>
@@ -51,6 +53,7 @@ struct Shape {
     const NearestOnSurface& nearest;
     const Body& body;
     RemeshOptions keep;
+    double radii_per_edge = 1.8; // edges where the body is strongly curved
 };
 
 /// One boundary, all attempts of TetGen; nothing if none succeeds.
@@ -96,7 +99,8 @@ double bounded_edge_m(const Shape& shape, double edge_m, const ImportOptions& op
     double longer_m = edge_m;
     while (longer_m < kMostGrowth * edge_m &&
            nodes_for(shape.skin, shape.body.volume_m3,
-                     shape_size(shape.skin, longer_m, shape.keep)) > kMostNodesShare * even) {
+                     shape_size(shape.skin, longer_m, shape.radii_per_edge, shape.keep)) >
+               kMostNodesShare * even) {
         longer_m *= 1.1;
     }
     return longer_m;
@@ -112,14 +116,14 @@ Solid make_solid(const Shape& shape, const BodyPlan& plan, const ImportOptions& 
     for (const double share : {1.0, 0.9, 0.8, 1.1, 0.7, 0.6}) {
         const double edge_m = share * made.edge_m;
         clock.begin(fmt::format("boundary {:.3g} mm", 1e3 * edge_m));
-        const Boundary boundary =
-            make_boundary(shape.skin, shape_size(shape.skin, edge_m, shape.keep),
-                          {.edge_m = edge_m,
-                           .volume_m3 = shape.body.volume_m3,
-                           .farthest = kAway,
-                           .keep = shape.keep,
-                           .fine = options.fine},
-                          notes);
+        const Boundary boundary = make_boundary(
+            shape.skin, shape_size(shape.skin, edge_m, shape.radii_per_edge, shape.keep),
+            {.edge_m = edge_m,
+             .volume_m3 = shape.body.volume_m3,
+             .farthest = kAway,
+             .keep = shape.keep,
+             .fine = options.fine},
+            notes);
         if (!boundary.problem.empty()) {
             problem = boundary.problem;
             clock.say(fmt::format("  after {} tries: {}", boundary.tries, problem));
@@ -190,6 +194,40 @@ void add_response(ImportedBody& made, PhaseClock& clock) {
     listener = nullptr;
 }
 
+/// Never finer than the linear tetrahedra. A body that is too thin for coarse ones stays without.
+void add_quadratic(const Shape& shape, const BodyPlan& plan, const ImportOptions& options,
+                   const Notes& notes, PhaseClock& clock, ImportedBody& made) {
+    ImportedBody coarse;
+    coarse.edge_m = std::max(
+        made.edge_m, edge_for_nodes(made.given_m3, area_m2(shape.body.surface), kQuadraticNodes));
+    ImportOptions wider = options;
+    wider.edge_mm = 0.0;
+    for (FineSpot& spot : wider.fine) {
+        spot.edge_mm *= coarse.edge_m / made.edge_m;
+    }
+    clock.begin(plan.name + ": coarser, for quadratic shapes");
+    try {
+        Solid solid = make_solid(shape, plan, wider, notes, clock, coarse);
+        tissue::BakedOrgan organ = made.organ;
+        organ.order = 2;
+        organ.recipe_hash = (plan.hash ^ 2) * 0x100000001B3ULL; // one more word of FNV-1a
+        organ.mesh = std::move(solid.mesh);
+        tissue::check_mesh(organ.mesh);
+        organ.anchored.assign(organ.mesh.rest_m.size(), 0);
+        clock.begin("footprints");
+        tissue::make_footprints(organ.mesh, organ.anchored,
+                                {.order = 2, .tip_radius_max_m = organ.tip_radius_max_m},
+                                organ.surface);
+        made.quadratic = {.organ = std::move(organ),
+                          .quality = solid.quality,
+                          .edge_m = coarse.edge_m,
+                          .volume_m3 = solid.volume_m3,
+                          .boundary_distance_m = solid.away_m};
+    } catch (const ImportRefused& e) {
+        made.no_quadratic = fmt::format("no tetrahedra for quadratic shapes: {}", e.what());
+    }
+}
+
 } // namespace
 
 ImportedBody make_organ(const Body& body, const Surface& seen, const BodyPlan& plan,
@@ -227,6 +265,9 @@ ImportedBody make_organ(const Body& body, const Surface& seen, const BodyPlan& p
         organ.mesh = std::move(solid.mesh);
         tissue::check_mesh(organ.mesh);
         add_response(made, clock);
+        Shape rounder = shape;
+        rounder.radii_per_edge = kQuadraticRadiiPerEdge;
+        add_quadratic(rounder, plan, options, notes, clock, made);
     }
     clock.end();
     if (made.skin_distance_m > kMostAway * made.edge_m) {

@@ -1,5 +1,6 @@
 #include "assets/bake/import/size_field.h"
 
+#include "assets/bake/edge_for_nodes.h"
 #include "assets/bake/nearest.h"
 
 #include <algorithm>
@@ -9,7 +10,6 @@
 namespace bake {
 namespace {
 
-constexpr double kRadiiPerEdge = 1.8;     // of curvature
 constexpr double kThicknessPerEdge = 1.5; // one layer of tetrahedra through a thin place
 constexpr double kCurvedShare = 0.5, kThinShare = 0.25; // of the edge, at least
 constexpr double kCreaseDeg = 45.0, kTipDeg = 180.0;
@@ -100,21 +100,7 @@ std::vector<double> radius_m(const Surface& s, const std::vector<int>& creases, 
     return radius;
 }
 
-double plain_count(double volume, double area, double h) {
-    return area / (0.5 * std::sqrt(3.0) * h * h) +
-           std::max(0.0, volume - 0.5 * h * area) * std::sqrt(2.0) / (h * h * h);
-}
-
 } // namespace
-
-double edge_for_nodes(double volume_m3, double area_m2, double nodes) {
-    double low = 1e-5, high = 1.0; // the count falls with the edge
-    for (int i = 0; i < 60; ++i) {
-        const double middle = std::sqrt(low * high);
-        (plain_count(volume_m3, area_m2, middle) > nodes ? low : high) = middle;
-    }
-    return high;
-}
 
 RemeshOptions edges_to_keep(const Surface& s, double skin_m) {
     double length_m = 0.0;
@@ -140,15 +126,16 @@ std::vector<double> thickness_m(const Surface& s, double most_m) {
     return thickness;
 }
 
-SizeAt shape_size(const Surface& skin, double edge_m, const RemeshOptions& keep) {
+SizeAt shape_size(const Surface& skin, double edge_m, double radii_per_edge,
+                  const RemeshOptions& keep) {
     double ignored = 0.0;
     const auto creases = count_creases(skin, keep.crease_deg, ignored);
     const Surface smooth = smoothed(skin, creases);
     std::vector<double> size = thickness_m(smooth, edge_m / kThicknessPerEdge);
-    const auto radius = radius_m(smooth, creases, edge_m / kRadiiPerEdge);
+    const auto radius = radius_m(smooth, creases, edge_m / radii_per_edge);
     for (std::size_t v = 0; v < size.size(); ++v) {
         const double thin = std::max(kThicknessPerEdge * size[v], kThinShare * edge_m);
-        const double curved = std::max(kRadiiPerEdge * radius[v], kCurvedShare * edge_m);
+        const double curved = std::max(radii_per_edge * radius[v], kCurvedShare * edge_m);
         size[v] = std::min({thin, curved, edge_m});
     }
     return graded_size(skin, std::move(size));
@@ -165,7 +152,7 @@ double nodes_for(const Surface& skin, double volume_m3, const SizeAt& size) {
         mean_m += h * m2;
     }
     mean_m /= area;
-    return boundary + plain_count(volume_m3, area, mean_m) -
+    return boundary + nodes_for_edge(volume_m3, area, mean_m) -
            area / (0.5 * std::sqrt(3.0) * mean_m * mean_m);
 }
 

@@ -6,11 +6,6 @@
 
 namespace bake {
 
-/// The edge at which a body of this volume and area gets about `nodes` nodes: those of even
-/// triangles on its area, sqrt(3)/2 h^2 each, and of even tetrahedra in what lies deeper than half
-/// an edge, h^3 / sqrt(2) each.
-double edge_for_nodes(double volume_m3, double area_m2, double nodes);
-
 /// How remeshing should treat a surface: creases are kept if the surface has few and clear ones, as
 /// cut planes and machined parts have; steps of voxels and noise are not creases. Sharp tips stay.
 RemeshOptions edges_to_keep(const Surface& surface, double skin_m);
@@ -20,10 +15,12 @@ RemeshOptions edges_to_keep(const Surface& surface, double skin_m);
 /// that is not held from the far side measures curvature or a corner, not thickness: `most_m`.
 std::vector<double> thickness_m(const Surface& surface, double most_m);
 
-/// Wanted edge for `skin`: `edge_m`, shorter where the surface is curved (down to half) or where
-/// the body, or the gap between two parts of it, is thin (down to a quarter). What is smaller than
-/// an edge (noise, steps) is smoothed away before looking.
-SizeAt shape_size(const Surface& skin, double edge_m, const RemeshOptions& keep);
+/// Wanted edge for `skin`: `edge_m`, shorter where the surface is curved (`radii_per_edge` times
+/// the radius of curvature, down to half) or where the body, or the gap between two parts of it, is
+/// thin (down to a quarter). What is smaller than an edge (noise, steps) is smoothed away before
+/// looking.
+SizeAt shape_size(const Surface& skin, double edge_m, double radii_per_edge,
+                  const RemeshOptions& keep);
 
 /// About how many nodes tetrahedra of that size in `skin` would have.
 double nodes_for(const Surface& skin, double volume_m3, const SizeAt& size);

@@ -1,7 +1,7 @@
 #include "assets/bake/import/import.h"
 
+#include "assets/bake/edge_for_nodes.h"
 #include "assets/bake/import/picture.h"
-#include "assets/bake/import/size_field.h"
 #include "tests/bake/import/surface_files.h"
 #include "tests/bake/shapes_for_tests.h"
 
@@ -27,6 +27,21 @@ bake::Imported imported(const Surface& s, const bake::ImportOptions& options) {
     return bake::import_surface(bytes_of(bytes), options);
 }
 
+/// What the tetrahedra for quadratic shapes must be.
+void check_good(const bake::QuadraticBody& q, const bake::ImportedBody& b) {
+    CHECK(q.organ.order == 2);
+    CHECK(q.organ.name == b.organ.name);
+    CHECK(q.organ.recipe_hash != b.organ.recipe_hash);
+    CHECK(q.organ.surface.rest_m == b.organ.surface.rest_m);
+    CHECK(q.edge_m >= b.edge_m);
+    CHECK(q.quality.worst_dihedral_deg >= bake::kLeastDihedralDeg);
+    CHECK(std::abs(q.volume_m3 / b.given_m3 - 1.0) <= 0.01);
+    CHECK(q.boundary_distance_m <= 0.5 * q.edge_m);
+    CHECK(*std::max_element(q.organ.surface.mesh_term_n_m.begin(),
+                            q.organ.surface.mesh_term_n_m.end()) == 0.0);
+    CHECK_NOTHROW(tissue::read_organ(tissue::write_organ(q.organ)));
+}
+
 /// What every imported organ must be.
 void check_good(const bake::Imported& i) {
     for (const auto& b : i.bodies) {
@@ -35,6 +50,8 @@ void check_good(const bake::Imported& i) {
         CHECK(b.skin_distance_m <= 0.5 * b.edge_m);
         CHECK(b.boundary_distance_m <= 0.5 * b.edge_m);
         CHECK_NOTHROW(tissue::read_organ(tissue::write_organ(b.organ)));
+        REQUIRE(b.quadratic);
+        check_good(*b.quadratic, b);
     }
 }
 
@@ -53,8 +70,33 @@ TEST_CASE("import: the same file and options give the same bytes") {
     const auto s = globe(30.0, 24, 16);
     const auto a = imported(s, quick(14.0)), b = imported(s, quick(14.0));
     CHECK(tissue::write_organ(a.bodies[0].organ) == tissue::write_organ(b.bodies[0].organ));
+    CHECK(tissue::write_organ(a.bodies[0].quadratic.value().organ) ==
+          tissue::write_organ(b.bodies[0].quadratic.value().organ));
     CHECK(bake::import_json(a, quick(14.0), false) == bake::import_json(b, quick(14.0), false));
     CHECK(bake::picture_png(a) == bake::picture_png(b));
+}
+
+TEST_CASE("import: for quadratic shapes a body gets about a hundred corners, at most its own") {
+    const auto ball = globe(30.0, 40, 24);
+    auto options = quick(0.0); // about 400 nodes
+    const auto usual = imported(ball, options);
+    const auto& b = usual.bodies.at(0);
+    REQUIRE(b.quadratic);
+    CHECK(b.quadratic->organ.mesh.rest_m.size() > 50);
+    CHECK(b.quadratic->organ.mesh.rest_m.size() < 200);
+    CHECK(b.organ.mesh.rest_m.size() > 250);
+    const auto coarse = imported(ball, quick(20.0));
+    REQUIRE(coarse.bodies.at(0).quadratic);
+    CHECK(coarse.bodies[0].quadratic->edge_m >= 20e-3);
+
+    const auto j = nlohmann::json::parse(bake::import_json(usual, options, false));
+    CHECK(j["files"][1] == "some_organ.quadratic.organ");
+    CHECK(j["body"][0]["quadratic"]["nodes"] == b.quadratic->organ.mesh.rest_m.size());
+    CHECK(bake::import_text(usual, options).find("some_organ.quadratic.organ") !=
+          std::string::npos);
+
+    options.rigid = true;
+    CHECK_FALSE(imported(ball, options).bodies.at(0).quadratic);
 }
 
 TEST_CASE("import: a brick keeps its edges and a torus its hole") {

@@ -272,7 +272,7 @@ TEST_CASE("import program: the same import twice writes the same bytes") {
         REQUIRE(import_file(*f, file, {"--edge", "14", "--picture", (f->path / "p.png").string()})
                     .exit_code() == 0);
     }
-    for (const char* name : {"a.organ", "report.json", "report.txt"}) {
+    for (const char* name : {"a.organ", "a.quadratic.organ", "report.json", "report.txt"}) {
         CAPTURE(name);
         CHECK(slurp(a.out() / name) == slurp(b.out() / name));
     }
