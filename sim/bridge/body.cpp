@@ -1,12 +1,15 @@
 #include "sim/bridge/body.h"
 
 #include "tissue/response/boundary_tree.h"
+#include "tissue/response/footprint.h"
 #include "tissue/response/subgrid.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 namespace sim {
 namespace {
@@ -77,6 +80,29 @@ std::shared_ptr<const tissue::BakedOrgan> scenery_of(const tissue::BakedOrgan& o
     return rigid;
 }
 
+// The same tetrahedra with quadratic shapes carry the skin by other rows and owe no mesh term.
+std::shared_ptr<const tissue::BakedOrgan> quadratic_of(const tissue::BakedOrgan& organ) {
+    auto quadratic = std::make_shared<tissue::BakedOrgan>(organ);
+    quadratic->order = 2;
+    tissue::make_footprints(quadratic->mesh, quadratic->anchored,
+                            {.order = 2, .tip_radius_max_m = organ.tip_radius_max_m},
+                            quadratic->surface);
+    return quadratic;
+}
+
+std::shared_ptr<const tissue::BakedOrgan> for_tier(std::shared_ptr<const tissue::BakedOrgan> organ,
+                                                   tissue::Tier tier) {
+    if (organ->rigid)
+        return organ;
+    if (tier == tissue::Tier::rigid)
+        return scenery_of(*organ);
+    if (tier == tissue::Tier::quadratic && organ->order == 1)
+        return quadratic_of(*organ);
+    if (tier != tissue::Tier::quadratic && organ->order != 1)
+        throw std::invalid_argument("organ " + organ->name + " was baked for quadratic shapes");
+    return organ;
+}
+
 double mixed(const std::vector<double>& values, const tissue::Triangle& t,
              const glm::dvec3& w) noexcept {
     return w.x * values[t[0]] + w.y * values[t[1]] + w.z * values[t[2]];
@@ -92,8 +118,7 @@ glm::dvec3 mixed(const std::vector<glm::dvec3>& values, const tissue::Triangle& 
 Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Material& material,
                const TipRadii& tip_radius_m, double dt_s, tissue::Tier tier) {
     Body body;
-    body.organ =
-        tier == tissue::Tier::rigid && !organ->rigid ? scenery_of(*organ) : std::move(organ);
+    body.organ = for_tier(std::move(organ), tier);
     body.material = material;
     const tissue::ContactSurface& skin = body.organ->surface;
     const std::size_t vertices = skin.rest_m.size();

@@ -12,8 +12,10 @@ std::vector<Body> make_bodies(const LoadedScene& loaded, double step_s, const Mo
     for (std::size_t t = 0; t < tips.size(); ++t)
         tips[t] = loaded.scene.tool[t].tip_radius_m;
     for (std::size_t i = 0; i < loaded.organ.size(); ++i) {
-        bodies.push_back(make_body(loaded.organ[i], loaded.scene.organ[i].material, tips, step_s,
-                                   choice.empty() ? kUsualTier : choice[i]));
+        const tissue::Tier tier = choice.empty() ? kUsualTier : choice[i];
+        const bool coarse = tier == tissue::Tier::quadratic && loaded.quadratic[i];
+        bodies.push_back(make_body(coarse ? loaded.quadratic[i] : loaded.organ[i],
+                                   loaded.scene.organ[i].material, tips, step_s, tier));
     }
     return bodies;
 }

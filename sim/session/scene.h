@@ -55,6 +55,8 @@ struct LoadedScene {
     Scene scene;
     ScenePlace place;
     std::vector<std::shared_ptr<const tissue::BakedOrgan>> organ; // beside scene.organ
+    // the same on coarse tets with quadratic shapes; null: there is none, the fine ones serve
+    std::vector<std::shared_ptr<const tissue::BakedOrgan>> quadratic;
     std::string hash; // SHA-256 of text, organs' bytes and region files; not of their place
 };
 /// The baked organs of a scene, held as it says. tasks::BadInput names the key of a file that is

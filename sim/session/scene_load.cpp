@@ -20,6 +20,11 @@ void refuse_or_keep(const TomlTable& t, const char* key, const std::string& acce
     mistakes->push_back({t.mention(key), accepted});
 }
 
+// NAME.organ -> NAME.quadratic.organ, as bake and import name it.
+std::filesystem::path quadratic_file(std::filesystem::path organ) {
+    return organ.replace_extension(".quadratic.organ");
+}
+
 // Null if the file is no good and mistakes are kept.
 std::shared_ptr<const tissue::BakedOrgan> load_organ(const std::filesystem::path& path,
                                                      const TomlTable& t, Mistakes* mistakes,
@@ -92,17 +97,21 @@ std::vector<DistanceField> anchor_fields(const LoadedScene& loaded, std::size_t 
 }
 
 LoadedScene load_organs(Scene scene, ScenePlace place, Mistakes* mistakes) {
-    LoadedScene loaded{std::move(scene), std::move(place), {}, {}};
+    LoadedScene loaded{std::move(scene), std::move(place), {}, {}, {}};
     const std::vector<TomlTable> tables =
         TomlTable::parse(loaded.scene.text, loaded.place.file.string()).tables("organ");
     std::string digest(loaded.scene.text), regions;
     for (std::size_t i = 0; i < loaded.scene.organ.size(); ++i) {
         SceneOrgan& organ = loaded.scene.organ[i];
         loaded.organ.emplace_back();
+        loaded.quadratic.emplace_back();
         if (organ.file.empty())
             continue; // said already
         loaded.organ.back() =
             load_organ(organ_file(loaded.place, organ.file), tables[i], mistakes, digest);
+        const std::filesystem::path coarse = quadratic_file(organ_file(loaded.place, organ.file));
+        if (loaded.organ.back() && !loaded.organ.back()->rigid && std::filesystem::exists(coarse))
+            loaded.quadratic.back() = load_organ(coarse, tables[i], mistakes, digest);
         if (loaded.organ.back() && loaded.organ.back()->rigid && !organ.anchor.empty())
             refuse_or_keep(tables[i], "anchor", "no anchor: this organ is rigid", mistakes);
         load_regions(organ, loaded.place, tables[i], mistakes, regions);
@@ -116,9 +125,12 @@ LoadedScene load_organs(Scene scene, ScenePlace place, Mistakes* mistakes) {
         if (organ.anchor.empty() || loaded.organ[i]->rigid)
             continue;
         try {
-            loaded.organ[i] = std::make_shared<const tissue::BakedOrgan>(
-                held_by(*loaded.organ[i], bed_of(loaded.organ[i]->mesh, anchor_fields(loaded, i),
-                                                 organ.hold_length_m)));
+            for (auto* baked : {&loaded.organ[i], &loaded.quadratic[i]}) {
+                if (*baked)
+                    *baked = std::make_shared<const tissue::BakedOrgan>(
+                        held_by(**baked, bed_of((*baked)->mesh, anchor_fields(loaded, i),
+                                                organ.hold_length_m)));
+            }
         } catch (const std::invalid_argument& e) {
             refuse_or_keep(tables[i], "file",
                            fmt::format("an organ whose hold can be changed; {}", e.what()),

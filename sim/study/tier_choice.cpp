@@ -91,7 +91,8 @@ TierMargin tier_margin(const TierTrack& cheap, const TierTrack& dear, int body, 
             }
         }
         for (int t = 0; any && t < dear.targets; ++t) {
-            if (dear.target_body[static_cast<std::size_t>(t)] != body)
+            const auto k = static_cast<std::size_t>(t);
+            if (dear.target_body[k] != body || !cheap.step[i].clear[k] || !dear.step[i].clear[k])
                 continue;
             const double d_m = glm::distance(target_m(cheap.step[i], t), target_m(dear.step[i], t));
             all.position.push_back(d_m / kPositionGate_m);

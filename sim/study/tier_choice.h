@@ -4,7 +4,7 @@
 // touches the organ:
 //   force      7 % of the dearer tier's above 0.5 N, 35 mN below
 //   stiffness  15 %: of the change of force over 50 ms, where the dearer tier's is 0.1 N or more
-//   position   0.5 mm: the skin under the tip, and the organ's targets
+//   position   0.5 mm: the skin under the tip, and the organ's targets that no tip is near
 // (the error budget A1, A2, A6). Comparing with the next tier only would keep a tier that locks as
 // much as the next one does. Never a name, a list or a clock decides. Pure.
 #pragma once

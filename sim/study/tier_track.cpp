@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <glm/geometric.hpp>
 #include <memory>
 
 namespace sim {
@@ -12,6 +13,23 @@ double cpu_ms() {
     timespec t{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
     return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+
+// Beside a tip the skin is theory within the kernel and a mean over it, and how wide the kernel is
+// belongs to the mesh: what tiers show there says nothing of the tissue.
+bool is_clear(const TissueRig& rig, const ToolsNow& tools, const EmbeddedTarget& target) {
+    constexpr double kKernels = 2.0; // of the force, and of the place that is looked at
+    const Body& body = rig.bodies[target.body];
+    for (int i = 0; i < kTools; ++i) {
+        const FemContact& contact = rig.contact[i];
+        if (contact.body != target.body || contact.force_n == glm::dvec3{0.0} || !body.soft)
+            continue;
+        const tissue::ContactSurface& skin = body.organ->surface;
+        const double radius_m = skin.footprint_radius_m[skin.triangles[contact.at.triangle][0]];
+        if (glm::distance(place_on(body, target.at), tools.tip[i].centre_m) < kKernels * radius_m)
+            return false;
+    }
+    return true;
 }
 
 TierSample sample_of(const TissueRig& rig, const ToolsNow& tools, const TissueAnswer& answer) {
@@ -26,6 +44,8 @@ TierSample sample_of(const TissueRig& rig, const ToolsNow& tools, const TissueAn
         sample.skin_m[i] = skin_under(rig, i);
     }
     sample.target_um = answer.seen.target_um;
+    for (std::size_t t = 0; t < rig.targets.size() && t < sample.clear.size(); ++t)
+        sample.clear[t] = is_clear(rig, tools, rig.targets[t]);
     return sample;
 }
 

@@ -6,6 +6,7 @@
 
 #include "sim/session/scene.h"
 
+#include <tuple>
 #include <vector>
 
 namespace sim {
@@ -18,6 +19,7 @@ struct TierSample {
     std::array<glm::dvec3, kTools> force_n, skin_m; // skin: the point under the tip, as drawn
     std::array<glm::dvec3, kTools> tip_m;
     TargetPlaces target_um;
+    std::array<bool, std::tuple_size_v<TargetPlaces>> clear; // of the dimples of touching tips
 };
 
 struct TierTrack {
