@@ -54,7 +54,8 @@ void refresh_contact_basis(const CorotatedModel& model, const CorotatedState& st
                            const CorotatedSystem& system, ContactBasis& basis) noexcept;
 
 /// For a quadratic body after a step. Its columns are solved for roughly and projected exactly: as
-/// a Galerkin basis any columns serve, and an error of the columns counts squared.
+/// a Galerkin basis any columns serve, and an error of the columns counts squared. `system` then
+/// remembers the modes, and its solves start from them; without contacts it forgets them.
 void compute_contact_basis(const QuadraticModel& model, const ContactSurface& surface,
                            const QuadraticState& state, QuadraticSystem& system,
                            std::span<const BasisContact> contacts, ContactBasis& basis) noexcept;

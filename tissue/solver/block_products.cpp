@@ -43,7 +43,7 @@ struct Tet {
 };
 
 // a : b, a(k) a number of the tet.
-template <typename Entry> V dot9(const Entry& a, const V* b) noexcept {
+template <typename Entry> HWY_INLINE V dot9(const Entry& a, const V* b) noexcept {
     V s0 = hn::Mul(a(0), b[0]), s1 = hn::Mul(a(1), b[1]), s2 = hn::Mul(a(2), b[2]);
     for (int k = 3; k < 9; k += 3) {
         s0 = hn::MulAdd(a(k), b[k], s0);
@@ -54,7 +54,7 @@ template <typename Entry> V dot9(const Entry& a, const V* b) noexcept {
 }
 
 // dF M, M in the order of Symmetric.
-void times_memory(const Tet& tet, int q, const V* dF, V* out) noexcept {
+HWY_INLINE void times_memory(const Tet& tet, int q, const V* dF, V* out) noexcept {
     constexpr std::array<std::array<int, 3>, 3> kPlace{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}}};
     for (int k = 0; k < 3; ++k) {
         const auto M = [&](int row) {
@@ -69,7 +69,7 @@ void times_memory(const Tet& tet, int q, const V* dF, V* out) noexcept {
 
 // dP from dF = grad[3 k + r]; C is linear in F, so dC is what each of two columns adds.
 // With a memory, F M is for F where it is not a part of C, as in quadratic_points.cpp.
-template <bool kMemory> void stress(const Tet& tet, int q, const V* dF, V* dP) noexcept {
+template <bool kMemory> HWY_INLINE void stress(const Tet& tet, int q, const V* dF, V* dP) noexcept {
     constexpr int kF = QuadraticTangent::kF, kC = QuadraticTangent::kC;
     const auto C = [&](int k) { return tet.at(q, kC + k); };
     const auto T = [&](int k) {

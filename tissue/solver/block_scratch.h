@@ -3,7 +3,7 @@
 // quadratic_columns.h work in. Sized at setup, tissue loop.
 #pragma once
 
-#include "tissue/solver/block_solve.h"
+#include "tissue/solver/block_modes.h"
 
 namespace tissue {
 
@@ -18,7 +18,8 @@ struct BlockScratch {
     std::vector<ColumnLine> ordered; // in elimination order, as solve_block() takes it
     std::vector<DoubleLine> double_x, double_y;
     std::vector<std::int32_t> order_of_unknown; // its place there
-    std::vector<float> bed_npm;                 // as QuadraticModel's
+    KnownModes known;
+    std::vector<float> bed_npm; // as QuadraticModel's
 };
 
 } // namespace tissue

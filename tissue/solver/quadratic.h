@@ -196,7 +196,8 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s);
 void linearize(const QuadraticModel& model, const QuadraticState& state,
                QuadraticSystem& system) noexcept;
 
-/// A x = b for one right-hand side on the unknowns, at the last linearisation.
+/// A x = b for one right-hand side on the unknowns, at the last linearisation. Starts from the
+/// modes of remember_modes(), if any (quadratic_columns.h).
 LinearReport solve(const QuadraticModel& model, const QuadraticOptions& options,
                    std::span<const double> b, QuadraticSystem& system,
                    std::span<double> x) noexcept;

@@ -85,12 +85,27 @@ struct Gradients {
     bool indefinite = false;
 };
 
+// x = what the known modes say, and r = b - A x from r = b.
+void start(const QuadraticModel& model, QuadraticSystem& s) noexcept {
+    std::fill(s.block.x.begin(), s.block.x.end(), ColumnLine{});
+    std::fill(s.block.p.begin(), s.block.p.end(), ColumnLine{});
+    if (s.block.known.modes == 0)
+        return;
+    add_known(s.block.known, s.block.r, s.block.x);
+    s.block.p = s.block.x;
+    multiply(model, s);
+    ColumnScalars back;
+    back.fill(-1.0);
+    add_scaled(back, s.block.q, s.block.r);
+}
+
 // From r = b. A column that is done stays as it is: its alpha and beta are zero.
 Gradients conjugate_gradients(const QuadraticModel& model, const QuadraticOptions& options,
                               QuadraticSystem& s) noexcept {
     Gradients report;
-    std::fill(s.block.x.begin(), s.block.x.end(), ColumnLine{});
-    report.size2 = report.left2 = products_of(s.block.r, s.block.r);
+    report.size2 = products_of(s.block.r, s.block.r);
+    start(model, s);
+    report.left2 = products_of(s.block.r, s.block.r);
     const double enough = options.linear_tolerance * options.linear_tolerance;
     std::array<bool, kLanes> on{};
     const auto any_left = [&] {
@@ -161,12 +176,30 @@ BlockScratch make_block_scratch(const QuadraticModel& model, std::span<const int
     block.ordered.resize(order.size() + SingleFactor::kColumns - 1);
     block.double_x.resize(lines);
     block.double_y.resize(lines);
+    block.known = make_known_modes(lines);
     block.order_of_unknown.resize(order.size());
     for (std::size_t k = 0; k < order.size(); ++k)
         block.order_of_unknown[order[k]] = static_cast<std::int32_t>(k);
     for (const double npm : model.bed_npm)
         block.bed_npm.push_back(static_cast<float>(npm));
     return block;
+}
+
+void remember_modes(const QuadraticModel& model, std::span<const double> shape,
+                    std::span<const double> lambda, QuadraticSystem& system) noexcept {
+    KnownModes& known = system.block.known;
+    const auto n = static_cast<std::size_t>(model.unknowns);
+    const double rate = 1.0 / system.dt_s;
+    const double of_m = rate * rate + model.material.damping_mass_1ps * rate;
+    const double of_k = 1.0 + model.material.damping_stiffness_s * rate;
+    known.modes = std::min(static_cast<int>(lambda.size()), KnownModes::kMost);
+    std::fill(known.inverse.begin(), known.inverse.end(), 0.0f);
+    for (int m = 0; m < known.modes; ++m) {
+        known.inverse[m] = static_cast<float>(1.0 / (of_m + of_k * lambda[m]));
+        const double* from = shape.data() + static_cast<std::size_t>(m) * n;
+        for (std::size_t k = 0; k < n; ++k)
+            known.at(m, line_of(model, k)) = static_cast<float>(from[k]);
+    }
 }
 
 ColumnsReport solve_columns(const QuadraticModel& model, const QuadraticOptions& options,

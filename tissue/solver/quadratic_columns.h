@@ -19,6 +19,18 @@ struct ColumnsReport {
     bool projected = false;         // A was indefinite, see LinearReport
 };
 
+/// M-orthonormal modes in which K is `lambda`, near enough: later solves, of one column too, start
+/// from their answer V (V^T A V)^-1 V^T b until others are given. A contact basis holds the answers
+/// to the loads of a step before, so half of the iterations go where a body is deformed, and what
+/// is solved roughly in every step converges over the steps. One mode after the other on the
+/// unknowns; none: nothing is known. Bits then depend on the modes, but all else does not.
+void remember_modes(const QuadraticModel& model, std::span<const double> shape,
+                    std::span<const double> lambda, QuadraticSystem& system) noexcept;
+
+/// Leaves `share` of the geometric stiffness in the tangent: without any, A is positive definite.
+/// In quadratic_linear.cpp.
+void scale_geometric_stiffness(float share, QuadraticSystem& system) noexcept;
+
 /// A X = B in place, `columns` columns on the unknowns, one after the other. A column stops at the
 /// tolerance, whatever the others do; its answer does not depend on them unless A is indefinite on
 /// one of them: then its group begins again without (half of) the geometric stiffness, as in

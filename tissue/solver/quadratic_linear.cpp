@@ -4,6 +4,7 @@
 // has to be near). Tissue loop.
 #include "tissue/solver/quadratic_linear.h"
 
+#include "tissue/solver/quadratic_columns.h"
 #include "tissue/solver/quadratic_points.h"
 #include "tissue/solver/quadratic_recovery.h"
 
@@ -73,6 +74,38 @@ void scale_geometric_stiffness(float share, QuadraticSystem& s) noexcept {
 
 namespace {
 
+// x = V diag(inverse) V^T b, and r = b - A x; see block_modes.h.
+void start_from_known(const QuadraticModel& model, QuadraticSystem& s) noexcept {
+    constexpr int kTile = KnownModes::kTile;
+    const KnownModes& known = s.block.known;
+    for (int m = 0; m < known.modes; m += kTile) {
+        const float* const tile = &known.value[static_cast<std::size_t>(m) * known.lines];
+        std::array<float, kTile> share{};
+        const float* value = tile;
+        for (std::size_t i = 0; i < s.warp.size(); ++i) {
+            for (std::size_t c = 0; c < 3; ++c, value += kTile) {
+                for (int k = 0; k < kTile; ++k)
+                    share[k] += value[k] * s.r[4 * i + c];
+            }
+        }
+        for (int k = 0; k < kTile; ++k)
+            share[k] *= known.inverse[m + k];
+        value = tile;
+        for (std::size_t i = 0; i < s.warp.size(); ++i) {
+            for (std::size_t c = 0; c < 3; ++c, value += kTile) {
+                float sum = 0.0f;
+                for (int k = 0; k < kTile; ++k)
+                    sum += value[k] * share[k];
+                s.x[4 * i + c] += sum;
+            }
+        }
+    }
+    s.p = s.x;
+    multiply(model, s);
+    for (std::size_t i = 0; i < s.r.size(); ++i)
+        s.r[i] -= s.q[i];
+}
+
 struct Gradients {
     int iterations = 0;
     double relative_residual = 0.0;
@@ -88,9 +121,15 @@ Gradients conjugate_gradients(const QuadraticModel& model, const QuadraticOption
     if (size2 == 0.0)
         return report;
     const double enough2 = options.linear_tolerance * options.linear_tolerance * size2;
+    if (s.block.known.modes > 0)
+        start_from_known(model, s);
+    double left2 = product_of(s.r, s.r);
+    report.relative_residual = std::sqrt(left2 / size2);
+    if (!(left2 > enough2))
+        return report;
     precondition(model, s);
     s.p = s.z;
-    double rz = product_of(s.r, s.z), left2 = size2;
+    double rz = product_of(s.r, s.z);
     while (report.iterations < options.max_linear) {
         multiply(model, s);
         const double curvature = product_of(s.p, s.q);

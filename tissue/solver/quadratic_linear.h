@@ -34,9 +34,6 @@ template <typename T> void clear_fixed(const QuadraticModel& model, NodeVector<T
     }
 }
 
-/// Leaves `share` of the geometric stiffness in the tangent; what is left of 0 is positive.
-void scale_geometric_stiffness(float share, QuadraticSystem& system) noexcept;
-
 /// A x = b on the nodes, QuadraticSystem::x from QuadraticSystem::b.
 LinearReport solve_nodes(const QuadraticModel& model, const QuadraticOptions& options,
                          QuadraticSystem& system) noexcept;
