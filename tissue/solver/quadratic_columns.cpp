@@ -236,15 +236,14 @@ void precondition_columns(const QuadraticModel& model, QuadraticSystem& system,
 
 void stiffness_products(const QuadraticModel& model, std::span<const double> x, int columns,
                         QuadraticSystem& s, std::span<double> y) noexcept {
-    const auto n = static_cast<std::size_t>(model.unknowns);
-    if (s.recovering) {
-        for (int j = 0; j < columns; ++j) {
-            const std::size_t at = static_cast<std::size_t>(j) * n;
-            stiffness_product(model, x.subspan(at, n), s, y.subspan(at, n));
-        }
-        return;
-    }
+    constexpr int kFew = 4; // columns that are cheaper one at a time
     for_groups(model, columns, [&](const Group& group) {
+        if (s.recovering || group.count <= kFew) {
+            for (int j = 0; j < group.count; ++j)
+                stiffness_product(model, x.subspan(group.at(j), group.n), s,
+                                  y.subspan(group.at(j), group.n));
+            return;
+        }
         read(model, x, group, s.block.p);
         if (model.bed_npm.empty())
             std::fill(s.block.q.begin(), s.block.q.end(), ColumnLine{});
