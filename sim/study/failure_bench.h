@@ -83,6 +83,12 @@ void projections(std::uint64_t seed, Rows& rows);                               
 void stale_plane(std::uint64_t seed, Rows& rows);                                // F6
 void signum_friction(std::uint64_t seed, Rows& rows);                            // F7
 void inverted_tets(std::uint64_t seed, Rows& rows);                              // F9
+void inverted_baselines(Rows& rows);                                             // F9, its part
+void locking(std::uint64_t seed, Rows& rows);                                    // F10
+void explicit_steps(std::uint64_t seed, Rows& rows);                             // F11
+void taut_strings(std::uint64_t seed, Rows& rows);                               // F12
+void stiffness_by_iterations(std::uint64_t seed, Rows& rows);                    // F13
+void rigid_turns(std::uint64_t seed, Rows& rows);                                // F14
 void pinched_sheet(const ContactMethod& method, std::uint64_t seed, Rows& rows); // F18
 void pinched_flap(std::uint64_t seed, Rows& rows);                               // F18
 void rigid_clusters(std::uint64_t seed, Rows& rows);                             // F16

@@ -31,6 +31,11 @@ constexpr std::array kGroups{
     Group{"F7", "friction", failure::friction, failure::signum_friction},
     Group{"F8", "a membrane of 0.5 mm is crossed", failure::membrane},
     Group{"F9", "inverted tetrahedra", nullptr, failure::inverted_tets},
+    Group{"F10", "near nu = 1/2 a bar stiffens", nullptr, failure::locking},
+    Group{"F11", "explicit steps that are too long", nullptr, failure::explicit_steps},
+    Group{"F12", "a taut string moved to the side", nullptr, failure::taut_strings},
+    Group{"F13", "stiffness by iterations", nullptr, failure::stiffness_by_iterations},
+    Group{"F14", "a body turned as a whole", nullptr, failure::rigid_turns},
     Group{"F16", "a flat face by many points", nullptr, failure::rigid_clusters},
     Group{"F17", "deep in thin and concave things", nullptr, failure::rigid_depths},
     Group{"F18", "a flap between two instruments", failure::pinched_sheet, failure::pinched_flap},
@@ -88,11 +93,13 @@ void write_failures_study(const FailureOptions& options, const std::vector<Failu
     const std::array caption{
         std::string("Gate: the bound that theory gives for a right method, in the unit of the "
                     "check. Each check with its value: failures.md, failures.csv."),
-        std::string("Reference: closed forms of each scene (sim/study/failure_*.cpp); brute force "
-                    "for depths (F17); the tissue stepped in every tick for couplings (F18)."),
+        std::string("Reference: closed forms of each scene (sim/study/failure_*.cpp); independent "
+                    "programs on the same bodies (F10, F11, F13); brute force for depths (F17); "
+                    "the tissue stepped in every tick for couplings (F18)."),
         fmt::format("Seed {}. Machine: {}; no time is measured.", options.seed, machine())};
     std::string page = fmt::format(
-        "# Failure scenes\n\nEach contact method in scenes where methods are known to fail. "
+        "# Failure scenes\n\nMethods of contact and of tissue in scenes where they are known to "
+        "fail. "
         "\"fails as known\": the published weakness shows where theory says, \"right\": it "
         "stays within the bound. ~: theory's value, within the tolerance.\n\n{}\n\n"
         "![Every method in every scene](failures.svg)\n",

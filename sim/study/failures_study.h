@@ -1,7 +1,7 @@
 // sim/study/failures_study.h
-// trocar study failures: scenes in which contact methods are known to fail, each method in each
-// scene, measured against theory. A naive method has to fail where and as described, ours must not.
-// Called by the command and by the tests.
+// trocar study failures: scenes in which methods of contact and of tissue are known to fail, each
+// method in each scene, measured against theory. A naive method has to fail where and as described,
+// ours must not. Called by the command and by the tests.
 #pragma once
 
 #include "haptics/contact/god_object.h"

@@ -5,6 +5,7 @@
 #include "tests/tissue/bodies.h"
 #include "tissue/baseline/mass_spring.h"
 #include "tissue/baseline/projective.h"
+#include "tissue/baseline/run.h"
 #include "tissue/baseline/tled.h"
 #include "tissue/baseline/xpbd.h"
 
@@ -31,51 +32,11 @@ inline double off(double value, double expected) {
     return std::abs(value - expected) / std::abs(expected);
 }
 
-/// `steps` from `state`.
-template <typename Model>
-tissue::BaselineReport run(const Model& model, std::span<const dvec3> load_n, double dt_s,
-                           int steps, tissue::BaselineState& state) {
-    auto scratch = make_scratch(model);
-    tissue::BaselineReport report;
-    for (int i = 0; i < steps; ++i)
-        report = step(model, load_n, dt_s, scratch, state);
-    return report;
-}
-
-/// Not a number if one is not.
-inline double fastest_mps(const tissue::BaselineState& state) {
-    double fastest = 0.0;
-    for (const dvec3& v : state.velocity_mps) {
-        const double speed = glm::length(v);
-        if (std::isnan(speed))
-            return speed;
-        fastest = std::max(fastest, speed);
-    }
-    return fastest;
-}
-
-/// Steps from rest until nothing is faster than `still_mps`.
-template <typename Model>
-tissue::BaselineState settled(const Model& model, std::span<const dvec3> load_n, double dt_s,
-                              double still_mps, int most_steps) {
-    auto scratch = make_scratch(model);
-    tissue::BaselineState state = rest_state(model.body);
-    for (int i = 0; i < most_steps; ++i) {
-        step(model, load_n, dt_s, scratch, state);
-        if (fastest_mps(state) < still_mps)
-            return state;
-    }
-    state.position_m.assign(state.position_m.size(), dvec3{NAN}); // so that no check passes
-    return state;
-}
-
-/// One tet on an equilateral base of radius 10 mm, its apex (node 3) above the centroid.
-inline tissue::TetMesh lone_tet(double height_m) {
-    const double r = 0.01, root3 = std::sqrt(3.0);
-    return {{{r, 0, 0}, {-r / 2, r * root3 / 2, 0}, {-r / 2, -r * root3 / 2, 0}, {0, 0, height_m}},
-            {{0, 1, 2, 3}}};
-}
-inline constexpr std::uint8_t kBase[] = {1, 1, 1, 0};
+using tissue::fastest_mps;
+using tissue::lone_tet;
+using tissue::run;
+using tissue::settled;
+inline constexpr auto& kBase = tissue::kLoneTetBase;
 
 inline tissue::TetMesh small_box() {
     return tissue::box_mesh({0.03, 0.02, 0.02}, {3, 2, 2}, 0.1);
