@@ -80,6 +80,11 @@ struct Quadratic {
     }
 };
 
+/// All nodes, held or not, where a body is to look for equilibrium from.
+template <typename Body> void carry(Body& body, const Place& place) {
+    body.state.position_m = reference_bodies::places(body.model.mesh, place);
+}
+
 /// Sum of the forces on the nodes where `chosen(rest place)`.
 template <typename Body, typename Chosen> glm::dvec3 force_where_n(Body& body, Chosen chosen) {
     const auto f = body.forces_n();
