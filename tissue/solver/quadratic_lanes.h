@@ -160,6 +160,42 @@ template <typename Vec> void cofactors(const Vec* F, Vec* C) noexcept {
 using D = V<double>;
 constexpr Tag<double> kD{};
 
+// Displacements of the tets of a group, from places; those of the sink are 0.
+[[maybe_unused]] void gather_moved(const QuadraticModel& model, const QuadraticGroup& group,
+                                   const std::vector<glm::dvec3>& position_m,
+                                   TetVector<double>& to) noexcept {
+    for (int a = 0; a < 10; ++a) {
+        for (int k = 0; k < kLanes; ++k) {
+            const auto node = static_cast<std::size_t>(group.node[a][k] / 4);
+            const glm::dvec3 u = node < position_m.size()
+                                     ? position_m[node] - model.mesh.rest_m[node]
+                                     : glm::dvec3{0.0};
+            for (int c = 0; c < 3; ++c)
+                to.at[3 * a + c][k] = u[c];
+        }
+    }
+}
+
+// F at point q, from displacements and their Shape::base().
+[[maybe_unused]] void deformation_at(const QuadraticGroup& group, const TetVector<double>& u,
+                                     const D* base, int q, int i, D* F) noexcept {
+    Shape<double>::gradient(u, base, group.gradient_1pm[q], q, i, F);
+    for (int k = 0; k < 3; ++k)
+        F[4 * k] = hn::Add(F[4 * k], hn::Set(kD, 1.0));
+}
+
+// T = F M, M a symmetric tensor: xx, yy, zz, xy, yz, zx
+template <typename Vec> void times_symmetric(const Vec* F, const Vec* M, Vec* T) noexcept {
+    constexpr int kPlace[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+    for (int k = 0; k < 3; ++k) {
+        for (int r = 0; r < 3; ++r) {
+            T[3 * k + r] =
+                hn::MulAdd(F[6 + r], M[kPlace[2][k]],
+                           hn::MulAdd(F[3 + r], M[kPlace[1][k]], hn::Mul(F[r], M[kPlace[0][k]])));
+        }
+    }
+}
+
 } // namespace
 } // namespace tissue::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

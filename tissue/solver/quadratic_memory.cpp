@@ -35,21 +35,6 @@ void relaxed_at(const D* F, D* out) noexcept {
     }
 }
 
-// Displacements of the tets of a group, from places; those of the sink are 0.
-void gather_moved(const QuadraticModel& model, const QuadraticGroup& group,
-                  const std::vector<glm::dvec3>& position_m, TetVector<double>& to) noexcept {
-    for (int a = 0; a < 10; ++a) {
-        for (int k = 0; k < kLanes; ++k) {
-            const auto node = static_cast<std::size_t>(group.node[a][k] / 4);
-            const glm::dvec3 u = node < position_m.size()
-                                     ? position_m[node] - model.mesh.rest_m[node]
-                                     : glm::dvec3{0.0};
-            for (int c = 0; c < 3; ++c)
-                to.at[3 * a + c][k] = u[c];
-        }
-    }
-}
-
 // A' of all terms and B'^-1 in place of A and B^-1, sixteen lanes at a time.
 void remember_at(const PronyStep& prony, int q, int i, const D* now,
                  QuadraticSymmetric* memory) noexcept {
@@ -77,9 +62,7 @@ void remember_all(const QuadraticModel& model, const PronyStep& prony, Quadratic
             D base[12], F[9], now[6];
             S::base(u, i, base);
             for (int q = 0; q < 4; ++q) {
-                S::gradient(u, base, model.groups[g].gradient_1pm[q], q, i, F);
-                for (int k = 0; k < 3; ++k)
-                    F[4 * k] = hn::Add(F[4 * k], hn::Set(kD, 1.0));
+                deformation_at(model.groups[g], u, base, q, i, F);
                 relaxed_at(F, now);
                 remember_at(prony, q, i, now, &state.memory[(prony.terms + 1) * g]);
             }

@@ -31,18 +31,6 @@ void keep(D v, float* to) noexcept {
     hn::Store(hn::DemoteTo(half, v), half, to);
 }
 
-// T = F M, M a symmetric tensor: xx, yy, zz, xy, yz, zx
-template <typename Vec> void times_symmetric(const Vec* F, const Vec* M, Vec* T) noexcept {
-    constexpr int kPlace[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
-    for (int k = 0; k < 3; ++k) {
-        for (int r = 0; r < 3; ++r) {
-            T[3 * k + r] =
-                hn::MulAdd(F[6 + r], M[kPlace[2][k]],
-                           hn::MulAdd(F[3 + r], M[kPlace[1][k]], hn::Mul(F[r], M[kPlace[0][k]])));
-        }
-    }
-}
-
 // P, times the volume, in place of F; the formulas are those of tissue/material/hyperelastic.cpp,
 // with a memory those of prony.cpp: M for mu, F M for F where it is not a part of C.
 template <bool kMemory>
