@@ -2,6 +2,7 @@
 // The text of a scene: organs and their anchors, tools, view. Called when a scene is loaded.
 #include "sim/session/scene.h"
 #include "tasks/exercise/toml_reader.h"
+#include "tissue/material/prony.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,9 +57,25 @@ view::Look parse_look(const TomlTable& t, const std::string& name) {
         t.choice("look", {view::kLookWords.begin(), view::kLookWords.end()}));
 }
 
+// Shares of the shear modulus at once, young_kpa's, and times: tissue/material/prony.h.
+std::vector<tissue::PronyTerm> parse_prony(const TomlTable& t) {
+    std::vector<tissue::PronyTerm> terms;
+    if (!t.has("prony"))
+        return terms;
+    double sum = 0.0;
+    for (const auto& [share, time_s] :
+         t.pairs("prony", "[share, time_s]", tissue::kPronyMost, {0.001, 0.999}, {1e-4, 1e5})) {
+        terms.push_back({share, time_s});
+        sum += share;
+    }
+    if (!(sum < 1.0))
+        t.refuse("prony", "shares of the shear modulus that sum to less than 1");
+    return terms;
+}
+
 SceneOrgan parse_organ(const TomlTable& t) {
     t.accept_only({"name", "file", "young_kpa", "poisson", "density_kgpm3", "damping_mass_1ps",
-                   "damping_stiffness_ms", "friction", "anchor", "hold_length_mm", "look",
+                   "damping_stiffness_ms", "friction", "prony", "anchor", "hold_length_mm", "look",
                    "runs_into"});
     const tissue::Material usual;
     SceneOrgan organ;
@@ -74,6 +91,7 @@ SceneOrgan parse_organ(const TomlTable& t) {
     m.damping_stiffness_s =
         1e-3 * t.number("damping_stiffness_ms", {0.0, 1e3}, 1e3 * usual.damping_stiffness_s);
     m.friction = t.number("friction", {0.0, 2.0}, usual.friction);
+    m.prony = parse_prony(t);
     organ.hold_length_m = 1e-3 * t.number("hold_length_mm", {0.1, 1000.0}, 10.0);
     organ.look = parse_look(t, organ.name);
     organ.runs_into = t.text("runs_into", "");

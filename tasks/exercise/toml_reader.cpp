@@ -171,6 +171,29 @@ int TomlTable::choice(std::string_view key, const std::vector<std::string>& choi
     return static_cast<int>(found - choices.begin());
 }
 
+std::vector<std::array<double, 2>> TomlTable::pairs(std::string_view key, std::string_view what,
+                                                    std::size_t most, Range first,
+                                                    Range second) const {
+    const std::string accepted = "[" + std::string(what) + ", ...], 1 to " + std::to_string(most) +
+                                 " pairs, the first number " + range_text(first) + ", the second " +
+                                 range_text(second);
+    if (!has(key) || !node_->value.at(std::string(key)).is_array())
+        refuse(key, accepted);
+    const toml::array& list = node_->value.at(std::string(key)).as_array();
+    if (list.empty() || list.size() > most)
+        refuse(key, accepted);
+    std::vector<std::array<double, 2>> pairs;
+    for (const toml::value& item : list) {
+        if (!item.is_array() || item.as_array().size() != 2)
+            refuse(key, accepted);
+        const auto a = as_number(item.as_array()[0]), b = as_number(item.as_array()[1]);
+        if (!a || !b || !inside(*a, first) || !inside(*b, second))
+            refuse(key, accepted);
+        pairs.push_back({*a, *b});
+    }
+    return pairs;
+}
+
 glm::dvec3 TomlTable::place_mm(std::string_view key, Range range_mm) const {
     const std::string accepted = "[x, y, z] in millimetres, each " + range_text(range_mm);
     if (!has(key) || !node_->value.at(std::string(key)).is_array())

@@ -4,6 +4,7 @@
 // Not real-time safe. Everything throws BadInput and nothing else.
 #pragma once
 
+#include <array>
 #include <glm/vec3.hpp>
 #include <initializer_list>
 #include <memory>
@@ -55,6 +56,10 @@ class TomlTable {
     std::string text(std::string_view key, std::optional<std::string> fallback = {}) const;
     /// One of `choices`; returns its index.
     int choice(std::string_view key, const std::vector<std::string>& choices) const;
+    /// [[a, b], ...]: at least one pair and at most `most`, each number inside its range. `what`
+    /// says what they are, for messages.
+    std::vector<std::array<double, 2>> pairs(std::string_view key, std::string_view what,
+                                             std::size_t most, Range first, Range second) const;
     /// [x, y, z] in millimetres, returned in metres; each component inside the range (mm).
     glm::dvec3 place_mm(std::string_view key, Range range_mm) const;
     /// The table written as [key]; an error without it.

@@ -60,6 +60,22 @@ TEST_CASE("scene check: every mistake in a scene's text is said at once") {
     CHECK(said[4].ends_with("a table [[tool]] with role = \"left\"; the scene has none"));
 }
 
+TEST_CASE("a scene's tissue may relax; a series that cannot be is named") {
+    const auto scene = [](const char* prony) {
+        return sim::parse_scene(with(kScene, "young_kpa = 6.0", prony), "s");
+    };
+    const auto terms = scene("prony = [[0.3, 0.5], [0.2, 8]]").organ[0].material.prony;
+    REQUIRE(terms.size() == 2);
+    CHECK(terms[1].share == 0.2);
+    CHECK(terms[1].time_s == 8.0);
+    CHECK_THROWS_WITH_AS(scene("prony = [[0.5, 1], [0.5, 2]]"),
+                         doctest::Contains("s:7: prony = [[0.5,1],[0.5,2]]: shares of the shear "
+                                           "modulus that sum to less than 1"),
+                         tasks::BadInput);
+    CHECK_THROWS_WITH_AS(scene("prony = [[0.5, 0]]"), doctest::Contains("[share, time_s]"),
+                         tasks::BadInput);
+}
+
 TEST_CASE("scene check: files that are missing, damaged or outside are named with the key") {
     const Directory directory;
     std::filesystem::remove(directory.folder / "block.organ");

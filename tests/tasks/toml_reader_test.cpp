@@ -47,3 +47,22 @@ TEST_CASE("a fallback stands for an absent key only") {
     CHECK(root.text("t", "y") == "y");
     CHECK_THROWS_AS(root.text("a", "y"), std::invalid_argument);
 }
+
+TEST_CASE("pairs of numbers are read, and what is none is named with what would be") {
+    const auto root = TomlTable::parse("p = [[0.3, 0.5], [0.2, 8]]\n", "f");
+    const auto pairs = root.pairs("p", "[share, time_s]", 4, {0.0, 1.0}, {0.0, 10.0});
+    CHECK(pairs == std::vector<std::array<double, 2>>{{0.3, 0.5}, {0.2, 8.0}});
+    const std::string accepted =
+        "[[share, time_s], ...], 1 to 2 pairs, the first number 0 to 1, the "
+        "second 0 to 10";
+    for (const char* bad : {"[]", "3", "[1, 2]", "[[1, 2, 3]]", "[[0.5, \"x\"]]", "[[2, 2]]",
+                            "[[0.1, nan]]", "[[0, 1], [0, 1], [0, 1]]"}) {
+        CAPTURE(bad);
+        const std::string said =
+            message("\np = " + std::string(bad) + "\n", [](const TomlTable& t) {
+                t.pairs("p", "[share, time_s]", 2, {0.0, 1.0}, {0.0, 10.0});
+            });
+        CHECK(said.starts_with("f:2: p = "));
+        CHECK(said.ends_with(accepted));
+    }
+}

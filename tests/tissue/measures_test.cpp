@@ -2,6 +2,7 @@
 // Energy, volume, stress and damage of a body in known states, corotated and quadratic.
 #include "tissue/solver/measures.h"
 
+#include "tests/tissue/allocations.h"
 #include "tests/tissue/driven_bodies.h"
 
 #include <doctest/doctest.h>
@@ -75,7 +76,9 @@ TEST_CASE_TEMPLATE("a body moved and turned as one measures nothing", Body, Coro
     auto log = make_tissue_log(body.model);
     const dmat3 R = bodies::rotation({1, 2, -1}, 2.0);
     put(body, [&](const dvec3& x) { return R * x + dvec3(0.2, 0, 1); });
+    const std::size_t before = bodies::allocations();
     const auto m = measure(body.model, body.state, {}, 0.01, log);
+    CHECK(bodies::allocations() == before);
     CHECK(m.stored_j < 1e-12 * kYoung_pa * kVolume_m3);
     CHECK(m.volume_m3 == doctest::Approx(kVolume_m3).epsilon(1e-12).scale(0.0));
     CHECK(std::abs(m.volume_change) < 1e-6); // the shares add rest volumes in single precision
