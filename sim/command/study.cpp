@@ -3,11 +3,9 @@
 #include "sim/command/commands.h"
 #include "sim/study/coupling_study.h"
 #include "sim/study/levels_study.h"
-#include "sim/study/organ_study.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace sim {
 namespace {
@@ -52,63 +50,6 @@ void add_coupling(CLI::App& study, const std::shared_ptr<StudyArguments>& a) {
     });
 }
 
-struct OrganArguments {
-    OrganStudyOptions organ;
-    double young_kpa = 5.4;
-    std::vector<double> from_mm{0.0, 0.0, 60.0}, heading{1.0, 0.0, 0.0};
-    std::string out;
-};
-
-void organ(OrganArguments& a) {
-    OrganStudyOptions& o = a.organ;
-    o.material.young_pa = 1e3 * a.young_kpa;
-    o.slide_from_mm = {a.from_mm[0], a.from_mm[1], a.from_mm[2]};
-    o.slide_heading = {a.heading[0], a.heading[1], a.heading[2]};
-    const OrganStudy study = run_organ_study(o);
-    if (!a.out.empty())
-        write_organ_study(o, study, a.out);
-    std::vector<double> depth_m, force_n(o.depth_mm.size(), 0.0);
-    for (std::size_t d = 0; d < o.depth_mm.size(); ++d) {
-        depth_m.push_back(1e-3 * o.depth_mm[d]);
-        for (const IndentPoint& p : study.point) {
-            force_n[d] += p.force_n[d] / static_cast<double>(study.point.size());
-        }
-    }
-    nlohmann::ordered_json json{{"nodes", study.nodes},
-                                {"tets", study.tets},
-                                {"points", study.point.size()},
-                                {"seed", o.seed},
-                                {"depth_m", depth_m},
-                                {"force_n", force_n},
-                                {"slide_step_percent", study.slide_step_percent}};
-    if (!o.other.empty()) {
-        json["other"] = {
-            {"nodes", study.other_nodes},
-            {"tets", study.other_tets},
-            {"force_ratio",
-             {{"min", study.ratio_min}, {"max", study.ratio_max}, {"mean", study.ratio_mean}}}};
-    }
-    fmt::print("{}\n", json.dump());
-}
-
-void add_organ(CLI::App& study) {
-    auto a = std::make_shared<OrganArguments>();
-    CLI::App* c = study.add_subcommand("organ", "Force against depth over an organ's skin");
-    OrganStudyOptions& o = a->organ;
-    c->add_option("organ", o.organ, "Name in the organ folder or file")->required();
-    c->add_option("--against", o.other, "The same organ in another mesh: ratio place by place");
-    c->add_option("--young", a->young_kpa, "Young's modulus, kPa");
-    c->add_option("--poisson", o.material.poisson, "Poisson's ratio");
-    c->add_option("--points", o.points, "Random places on the free skin");
-    c->add_option("--seed", o.seed, "Of the places");
-    c->add_option("--depths", o.depth_mm, "mm");
-    c->add_option("--slide-from", a->from_mm, "Start of the slide, mm")->expected(3);
-    c->add_option("--slide-heading", a->heading, "Its direction")->expected(3);
-    c->add_option("--slide", o.slide_mm, "Its length, mm");
-    c->add_option("--out", a->out, "Folder for the CSV");
-    c->callback([a] { organ(*a); });
-}
-
 void add_levels(CLI::App& study) {
     auto a = std::make_shared<LevelsStudyOptions>();
     auto seeds = std::make_shared<std::vector<std::uint64_t>>();
@@ -134,7 +75,7 @@ void add_study(CLI::App& app, int& exit_code) {
     CLI::App* c = app.add_subcommand("study", "The charts: CSV and one page each");
     c->require_subcommand(1);
     add_coupling(*c, a);
-    add_organ(*c);
+    add_study_organ(*c);
     add_levels(*c);
     add_failures_study(*c, exit_code);
     add_scaling_study(*c, exit_code);

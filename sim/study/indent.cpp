@@ -29,7 +29,7 @@ Indenter::Indenter(std::shared_ptr<const tissue::BakedOrgan> organ,
     : body_(make_body(std::move(organ), material,
                       TipRadii{tip_radius_m, tip_radius_m, tip_radius_m},
                       std::numeric_limits<double>::infinity())),
-      feel_(body_) {
+      feel_(body_), radius_m_(tip_radius_m) {
     if (!body_.soft)
         throw std::invalid_argument("a rigid organ cannot be indented");
     if (!feel_.firm())
@@ -47,9 +47,8 @@ IndentPoint Indenter::press(const glm::dvec3& near_m, std::span<const double> de
         0.5 * (compliance[0][0] + compliance[1][1] + compliance[2][2] - out.mesh_mpn);
     const haptics::LocalLaw law = law_on(body_, foot.at, 0, 0.0);
     out.linear_mpn = law.normal_mpn;
-    const double radius_m = body_.organ->tip_radius_max_m;
     for (const double d : depth_m)
-        out.force_n.push_back(press_force_n(law, out.mesh_mpn, d, radius_m));
+        out.force_n.push_back(press_force_n(law, out.mesh_mpn, d, radius_m_));
     return out;
 }
 

@@ -32,6 +32,7 @@ class Indenter {
   private:
     Body body_;
     RestFeel feel_; // of body_
+    double radius_m_;
 };
 
 /// Seeded, area-weighted places on the skin that a footprint's radius of free tissue surrounds:

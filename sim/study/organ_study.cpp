@@ -9,12 +9,6 @@
 namespace sim {
 namespace {
 
-std::shared_ptr<const tissue::BakedOrgan> load_organ(const std::string& name) {
-    const std::filesystem::path path =
-        std::filesystem::exists(name) ? std::filesystem::path(name) : organ_path(name + ".organ");
-    return std::make_shared<const tissue::BakedOrgan>(tissue::read_organ(read_bytes(path)));
-}
-
 std::vector<IndentPoint> press_all(Indenter& indenter, const std::vector<glm::dvec3>& places,
                                    const std::vector<double>& depth_mm) {
     std::vector<double> depth_m;
@@ -74,6 +68,12 @@ std::string lines(const char* what, const std::vector<IndentPoint>& points,
 }
 
 } // namespace
+
+std::shared_ptr<const tissue::BakedOrgan> load_organ(const std::string& name) {
+    const std::filesystem::path path =
+        std::filesystem::exists(name) ? std::filesystem::path(name) : organ_path(name + ".organ");
+    return std::make_shared<const tissue::BakedOrgan>(tissue::read_organ(read_bytes(path)));
+}
 
 OrganStudy run_organ_study(const OrganStudyOptions& o) {
     OrganStudy study;

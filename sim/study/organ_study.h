@@ -28,6 +28,9 @@ struct OrganStudy {
     double ratio_min = 1.0, ratio_max = 1.0, ratio_mean = 1.0;
     double slide_step_percent = 0.0; // largest change of stiffness per step, of the mean
 };
+/// By name in the organ folder, or a file. Throws as read_bytes() and read_organ() do.
+std::shared_ptr<const tissue::BakedOrgan> load_organ(const std::string& name);
+
 OrganStudy run_organ_study(const OrganStudyOptions& options);
 
 void write_organ_study(const OrganStudyOptions& options, const OrganStudy& study,

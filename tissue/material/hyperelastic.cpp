@@ -131,6 +131,28 @@ void jacobi_rotate(Tangent& a, Tangent& v, int p, int q) noexcept {
     }
 }
 
+// Cholesky with a diagonal raised by so little that no projection could matter less.
+bool is_positive(Tangent a) noexcept {
+    constexpr double kRaised = 1e-9; // of the mean diagonal
+    double trace = 0.0;
+    for (int i = 0; i < 9; ++i)
+        trace += a[i][i];
+    for (int j = 0; j < 9; ++j) {
+        double pivot = a[j][j] + kRaised * trace / 9.0;
+        for (int k = 0; k < j; ++k)
+            pivot -= a[j][k] * a[j][k];
+        if (!(pivot > 0.0))
+            return false;
+        a[j][j] = std::sqrt(pivot);
+        for (int i = j + 1; i < 9; ++i) {
+            for (int k = 0; k < j; ++k)
+                a[i][j] -= a[i][k] * a[j][k];
+            a[i][j] /= a[j][j];
+        }
+    }
+    return true;
+}
+
 } // namespace
 
 Elasticity elasticity(const Material& material, Law law) {
@@ -151,6 +173,8 @@ Tangent piola_tangent_pa(const Elasticity& e, const dmat3& F) noexcept {
 }
 
 void project_positive(Tangent& tangent) noexcept {
+    if (is_positive(tangent))
+        return;
     constexpr int kSweeps = 20; // quadratic in the end: 6 to 8 are needed
     constexpr double kDone = 1e-30;
     Tangent a = tangent, v{};

@@ -29,6 +29,10 @@ void check_press(const Press& p) {
     }
     if (!(std::abs(glm::length(p.into) - 1.0) < 1e-9))
         throw std::invalid_argument("press: the way of the tip must have length 1");
+    if (!(p.friction >= 0.0)) {
+        throw std::invalid_argument("press: friction = " + std::to_string(p.friction) +
+                                    ": must be 0 or greater");
+    }
     double last = 0.0;
     for (const double d : p.depth_m) {
         if (!(d > last)) {
@@ -45,35 +49,17 @@ Tip tip_at(const Press& p, double depth_m) {
     return {p.place_m + (depth_m - p.radius_m) * p.into, -p.into, p.radius_m};
 }
 
-// What is known of the contact goes into the next step.
-void learn(const ReferenceModel& model, std::span<const dvec3> moved_m, bool sticks,
-           TipContact& contact) {
-    for (ContactPoint& p : contact.points) {
-        const dvec3 x = place_of(model.mesh, p, moved_m);
-        const dvec3 traction_pa = traction_at(contact, p, x);
-        const bool pushes = glm::dot(traction_pa, gap_at(contact.tip, x).normal) > 0.0;
-        if (sticks && pushes && !p.stuck) {
-            p.stuck = true;
-            p.held_at_m = x - contact.tip.centre_m;
-        }
-        p.stuck = p.stuck && pushes;
-        p.traction_pa = p.stuck ? -traction_pa : dvec3{glm::length(traction_pa), 0.0, 0.0};
-        if (!pushes)
-            p.traction_pa = dvec3{0.0};
-    }
-}
-
 PressPoint measured(const ReferenceModel& model, std::span<const dvec3> moved_m,
                     const TipContact& contact) {
     PressPoint out;
     double area_m2 = 0.0;
     for (const ContactPoint& p : contact.points) {
         const dvec3 x = place_of(model.mesh, p, moved_m);
-        const dvec3 traction_pa = traction_at(contact, p, x);
-        if (traction_pa == dvec3{0.0})
+        const Traction t = traction_at(contact, p, x);
+        out.force_n -= p.area_m2 * (t.pressure_pa * t.normal + t.friction_pa);
+        if (t.pressure_pa <= 0.0)
             continue;
         area_m2 += p.area_m2;
-        out.force_n -= p.area_m2 * traction_pa;
         out.penetration_m = std::max(out.penetration_m, -gap_at(contact.tip, x).value_m);
     }
     out.radius_m = std::sqrt(area_m2 / std::numbers::pi);
@@ -92,7 +78,7 @@ std::vector<dvec3> foreseen(const ReferenceModel& model, const std::vector<dvec3
 } // namespace
 
 PressReport press(const ReferenceModel& model, const Press& p, ReferenceSystem& system,
-                  ReferenceState& state, const std::function<void(double)>& progress) {
+                  ReferenceState& state, const std::function<void(const PressPoint&)>& progress) {
     check_press(p);
     TipContact contact{contact_points(model.mesh, p.place_m, reach_m(p)), tip_at(p, 0.0),
                        p.penalty * model.material.young_pa / p.radius_m};
@@ -122,14 +108,14 @@ PressReport press(const ReferenceModel& model, const Press& p, ReferenceSystem& 
         last_step_m = taken_m;
         step_m = std::min(greatest_m, 2.0 * step_m);
         report.reached_m = depth_m;
-        if (arrives) {
-            report.point.push_back(measured(model, now, contact));
-            report.point.back().depth_m = depth_m;
-            report.point.back().min_det_f = newton.min_det_f;
-        }
-        learn(model, now, p.sticks, contact);
+        PressPoint point = measured(model, now, contact);
+        point.depth_m = depth_m;
+        point.min_det_f = newton.min_det_f;
+        if (arrives)
+            report.point.push_back(point);
+        learn_contact(model, now, p.friction, contact);
         if (progress)
-            progress(depth_m);
+            progress(point);
     }
     for (std::size_t i = 0; i < now.size(); ++i)
         state.position_m[i] = model.mesh.rest_m[i] + now[i];

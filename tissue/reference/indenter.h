@@ -1,8 +1,8 @@
 // tissue/reference/indenter.h
 // What it takes to press a rigid round tip into a reference body: statics with contact, one depth
 // after the other. Called by studies and tests; slow; any thread, one per system.
-// The tip slides without friction, or holds every point of the skin from the end of the step in
-// which it was touched until it would have to pull (first order in the step).
+// The tip slides on the skin under Coulomb friction, freely (0) or not at all (infinite); the limit
+// is that of the step before, so friction is of first order in the step.
 #pragma once
 
 #include "tissue/reference/tip_contact.h"
@@ -16,10 +16,10 @@ struct Press {
     glm::dvec3 into{0.0, 0.0, -1.0}; // unit, the way of the tip
     double radius_m = 1.5e-3;        // of the tip
     std::vector<double> depth_m;     // ascending, > 0
-    bool sticks = false;
-    double step_m = 0.0;    // greatest step; 0: a quarter of the radius
-    double penalty = 100.0; // k radius / E
-    int step_halvings = 3;  // before giving up
+    double friction = 0.0;           // Coulomb coefficient, may be infinite
+    double step_m = 0.0;             // greatest step; 0: a quarter of the radius
+    double penalty = 100.0;          // k radius / E
+    int step_halvings = 3;           // before giving up
     NewtonOptions newton{.tolerance = 1e-7, .max_iterations = 25, .max_halvings = 1};
 };
 
@@ -39,10 +39,10 @@ struct PressReport {
 };
 
 /// From `state` at rest; ends at the last equilibrium. Fewer points than depths: no equilibrium was
-/// found beyond reached_m. `progress` (may be empty) gets every depth with an equilibrium. Throws
+/// found beyond reached_m. `progress` (may be empty) gets every equilibrium on the way. Throws
 /// std::invalid_argument for a radius, way or depths that are not as above, and if no face is near.
 PressReport press(const ReferenceModel& model, const Press& press, ReferenceSystem& system,
-                  ReferenceState& state, const std::function<void(double depth_m)>& progress = {});
+                  ReferenceState& state, const std::function<void(const PressPoint&)>& progress = {});
 
 /// Depth at which a tip on its way first touches a quadrature point of the skin: 0 on a plane,
 /// less where the skin bulges or is not square to the way.

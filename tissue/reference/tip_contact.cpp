@@ -60,6 +60,12 @@ dmat3 gap_curvature(const Tip& tip, const dvec3& x, const Gap& gap) noexcept {
     return across * (1.0 / std::max(gap.value_m + tip.radius_m, 1e-3 * tip.radius_m));
 }
 
+// Across the tip's surface where the point was bound.
+dmat3 tangent_plane(const TipContact& c, const ContactPoint& p) noexcept {
+    const dvec3 n = gap_at(c.tip, c.tip.centre_m + p.bound_at_m).normal;
+    return dmat3(1.0) - glm::outerProduct(n, n);
+}
+
 struct PointTerms {
     dvec3 slope_pa{0.0};
     dmat3 tangent_papm{0.0};
@@ -68,16 +74,26 @@ struct PointTerms {
 
 PointTerms terms_at(const TipContact& c, const ContactPoint& p, const dvec3& x,
                     bool projected) noexcept {
-    if (p.stuck)
-        return {-traction_at(c, p, x), dmat3(c.penalty_papm), true};
-    const Gap gap = gap_at(c.tip, x);
-    const double pressure_pa = p.traction_pa.x - c.penalty_papm * gap.value_m;
-    if (pressure_pa <= 0.0)
-        return {};
-    PointTerms out{-pressure_pa * gap.normal,
-                   c.penalty_papm * glm::outerProduct(gap.normal, gap.normal), true};
-    if (!projected)
-        out.tangent_papm -= pressure_pa * gap_curvature(c.tip, x, gap);
+    const double k = c.penalty_papm;
+    const Traction t = traction_at(c, p, x);
+    PointTerms out;
+    if (t.pressure_pa > 0.0) {
+        out = {-t.pressure_pa * t.normal, k * glm::outerProduct(t.normal, t.normal), true};
+        if (!projected)
+            out.tangent_papm -= t.pressure_pa * gap_curvature(c.tip, x, gap_at(c.tip, x));
+    }
+    if (!p.bound)
+        return out;
+    out.acts = true;
+    out.slope_pa -= t.friction_pa;
+    const double s = glm::length(t.way_m);
+    dmat3 across = tangent_plane(c, p);
+    if (k * s <= p.limit_pa) {
+        out.tangent_papm += k * across;
+    } else {
+        across -= glm::outerProduct(t.way_m, t.way_m) * (1.0 / (s * s));
+        out.tangent_papm += p.limit_pa / s * across;
+    }
     return out;
 }
 
@@ -126,11 +142,33 @@ dvec3 place_of(const QuadraticMesh& mesh, const ContactPoint& point,
     return x;
 }
 
-dvec3 traction_at(const TipContact& c, const ContactPoint& p, const dvec3& x_m) noexcept {
-    if (p.stuck)
-        return -p.traction_pa - c.penalty_papm * (x_m - c.tip.centre_m - p.held_at_m);
+Traction traction_at(const TipContact& c, const ContactPoint& p, const dvec3& x_m) noexcept {
     const Gap gap = gap_at(c.tip, x_m);
-    return std::max(0.0, p.traction_pa.x - c.penalty_papm * gap.value_m) * gap.normal;
+    Traction out{std::max(0.0, p.pressure_pa - c.penalty_papm * gap.value_m), gap.normal};
+    if (!p.bound)
+        return out;
+    out.way_m = tangent_plane(c, p) * (x_m - c.tip.centre_m - p.bound_at_m);
+    const double s = glm::length(out.way_m);
+    const double held_pa = std::min(c.penalty_papm * s, p.limit_pa);
+    if (s > 0.0)
+        out.friction_pa = -held_pa / s * out.way_m;
+    return out;
+}
+
+void learn_contact(const ReferenceModel& model, std::span<const dvec3> moved_m, double friction,
+                   TipContact& contact) noexcept {
+    for (ContactPoint& p : contact.points) {
+        const dvec3 x = place_of(model.mesh, p, moved_m);
+        const Traction t = traction_at(contact, p, x);
+        // what friction does not hold has slipped
+        if (p.bound)
+            p.bound_at_m += t.way_m + t.friction_pa / contact.penalty_papm;
+        else
+            p.bound_at_m = x - contact.tip.centre_m;
+        p.bound = t.pressure_pa > 0.0 && friction > 0.0;
+        p.pressure_pa = t.pressure_pa;
+        p.limit_pa = p.bound ? friction * t.pressure_pa : 0.0;
+    }
 }
 
 double contact_energy_j(const ReferenceModel& model, const TipContact& contact,
@@ -138,15 +176,13 @@ double contact_energy_j(const ReferenceModel& model, const TipContact& contact,
     const double k = contact.penalty_papm;
     double sum = 0.0;
     for (const ContactPoint& p : contact.points) {
-        const dvec3 x = place_of(model.mesh, p, moved_m);
-        if (p.stuck) {
-            const dvec3 away = x - contact.tip.centre_m - p.held_at_m;
-            sum += p.area_m2 * (glm::dot(p.traction_pa, away) + 0.5 * k * glm::dot(away, away));
+        const Traction t = traction_at(contact, p, place_of(model.mesh, p, moved_m));
+        sum +=
+            0.5 * p.area_m2 / k * (t.pressure_pa * t.pressure_pa - p.pressure_pa * p.pressure_pa);
+        if (!p.bound)
             continue;
-        }
-        const double known_pa = p.traction_pa.x;
-        const double pressure_pa = std::max(0.0, known_pa - k * gap_at(contact.tip, x).value_m);
-        sum += 0.5 * p.area_m2 / k * (pressure_pa * pressure_pa - known_pa * known_pa);
+        const double s = glm::length(t.way_m), m = p.limit_pa;
+        sum += p.area_m2 * (k * s <= m ? 0.5 * k * s * s : m * (s - 0.5 * m / k));
     }
     return sum;
 }

@@ -1,0 +1,145 @@
+// The organ's places pressed by both; see organ_reference.h.
+#include "sim/study/organ_reference.h"
+
+#include "sim/session/rehold.h"
+#include "sim/study/organ_study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+namespace sim {
+namespace {
+
+using glm::dvec3;
+using OrganPointer = std::shared_ptr<const tissue::BakedOrgan>;
+
+constexpr Gates kGates;
+
+OrganPointer held_organ(OrganPointer organ, const HoldSide& hold) {
+    if (hold.toward == dvec3{0.0})
+        return organ;
+    if (!(hold.share > 0.0 && hold.share <= 1.0)) {
+        throw std::invalid_argument(
+            fmt::format("hold share = {}: must be above 0 and at most 1", hold.share));
+    }
+    const dvec3 toward = glm::normalize(hold.toward);
+    double low = std::numeric_limits<double>::max(), high = -low;
+    for (const dvec3& x : organ->mesh.rest_m) {
+        low = std::min(low, glm::dot(x, toward));
+        high = std::max(high, glm::dot(x, toward));
+    }
+    const double from = high - hold.share * (high - low);
+    return std::make_shared<const tissue::BakedOrgan>(
+        held_by(*organ, tissue::make_bed(
+                            organ->mesh, [&](const dvec3& x) { return glm::dot(x, toward) > from; },
+                            hold.length_m)));
+}
+
+double percent(double value, double truth) {
+    return truth == 0.0 ? 0.0 : 100.0 * (value - truth) / std::abs(truth);
+}
+
+// `before`: the row of the depth before, or one of zeros.
+ReferenceRow row_of(const IndentPoint& ours, const ReferencePress& reference, std::size_t d,
+                    const ReferenceRow& before, double depth_m) {
+    ReferenceRow r{.depth_m = depth_m, .force_n = ours.force_n[d]};
+    r.stiffness_npm = (r.force_n - before.force_n) / (depth_m - before.depth_m);
+    r.solved = d < reference.force_n.size();
+    if (!r.solved)
+        return r;
+    const dvec3 force = reference.force_n[d];
+    r.reference_n = glm::dot(force, ours.normal);
+    r.error_n = r.force_n - r.reference_n;
+    r.error_percent = percent(r.force_n, r.reference_n);
+    r.reference_npm = (r.reference_n - before.reference_n) / (depth_m - before.depth_m);
+    r.stiffness_percent = percent(r.stiffness_npm, r.reference_npm);
+    r.direction_deg = std::acos(std::clamp(r.reference_n / glm::length(force), -1.0, 1.0)) * 180 /
+                      std::numbers::pi;
+    r.a1 = r.reference_n > kGates.full_force_n ? std::abs(r.error_percent) <= kGates.force_percent
+                                               : std::abs(r.error_n) <= kGates.small_force_n;
+    r.a2 = std::abs(r.stiffness_percent) <= kGates.stiffness_percent;
+    r.a3 = r.direction_deg <= kGates.direction_deg;
+    return r;
+}
+
+void add_rows(const OrganReferenceOptions& o, int place, OrganReference& study) {
+    ReferenceRow before;
+    for (std::size_t d = 0; d < o.press.depth_m.size(); ++d) {
+        ReferenceRow r =
+            row_of(study.place[place], study.reference[place], d, before, o.press.depth_m[d]);
+        r.place = place;
+        study.row.push_back(r);
+        before = r;
+    }
+}
+
+} // namespace
+
+OrganReference run_organ_reference(const OrganReferenceOptions& o,
+                                   const std::function<void(const std::string&)>& say) {
+    if (o.press.depth_m.empty() || o.places < 1)
+        throw std::invalid_argument("organ reference: want at least one depth and one place");
+    const OrganPointer organ = held_organ(load_organ(o.organ), o.hold);
+    if (o.press.radius_m > organ->tip_radius_max_m) {
+        throw std::invalid_argument(
+            fmt::format("tip radius {} mm: '{}' was baked for at most {} mm",
+                        1e3 * o.press.radius_m, organ->name, 1e3 * organ->tip_radius_max_m));
+    }
+    Indenter indenter(organ, o.material, o.press.radius_m);
+    OrganReference study{.nodes = static_cast<int>(organ->mesh.rest_m.size()),
+                         .tets = static_cast<int>(organ->mesh.tets.size())};
+    for (const dvec3& place : random_places(indenter.body(), o.places, o.seed)) {
+        const int i = static_cast<int>(study.place.size());
+        study.place.push_back(indenter.press(place, o.press.depth_m));
+        const IndentPoint& p = study.place.back();
+        study.reference.push_back(
+            press_reference(*organ, o.material, p.place_m, -p.normal, o.press));
+        add_rows(o, i, study);
+        const ReferencePress& r = study.reference.back();
+        const ReferenceRow last = study.row[study.row.size() - o.press.depth_m.size() +
+                                            std::max<std::size_t>(r.force_n.size(), 1) - 1];
+        say(fmt::format("place {:>2} of {}: reference to {:.2f} mm ({} nodes, {} solves, {:.0f} s "
+                        "CPU); there {:.0f} mN, ours {:.0f} mN",
+                        i + 1, o.places, 1e3 * r.reached_m, r.nodes, r.iterations, r.cpu_s,
+                        1e3 * last.reference_n, 1e3 * last.force_n));
+    }
+    return study;
+}
+
+ReferenceSummary summary_of(const OrganReferenceOptions& o, const OrganReference& study) {
+    ReferenceSummary s;
+    s.least_reached_m = std::numeric_limits<double>::max();
+    for (const ReferencePress& r : study.reference)
+        s.least_reached_m = std::min(s.least_reached_m, r.reached_m);
+    const std::size_t depths = o.press.depth_m.size();
+    for (std::size_t place = 0; place < study.place.size(); ++place) {
+        bool inside = true, whole = true;
+        for (std::size_t d = 0; d < depths; ++d) {
+            const ReferenceRow& r = study.row[place * depths + d];
+            ++s.rows;
+            whole = whole && r.solved;
+            if (!r.solved)
+                continue;
+            ++s.solved;
+            s.a1 += r.a1;
+            s.a2 += r.a2;
+            s.a3 += r.a3;
+            inside = inside && r.a1 && r.a2 && r.a3;
+            s.worst_n = std::max(s.worst_n, std::abs(r.error_n));
+            s.worst_percent = std::max(s.worst_percent, std::abs(r.error_percent));
+            s.worst_stiffness_percent =
+                std::max(s.worst_stiffness_percent, std::abs(r.stiffness_percent));
+            s.worst_deg = std::max(s.worst_deg, r.direction_deg);
+        }
+        s.places_inside += inside && whole;
+        s.places_to_the_end += whole;
+    }
+    return s;
+}
+
+} // namespace sim

@@ -1,0 +1,75 @@
+// sim/study/organ_reference.h
+// trocar study organ --reference: what a tip of the trainer feels at places of an organ beside what
+// the reference solver says, against the gates for accuracy:
+//   A1 force within 7 % above 0.5 N, 35 mN below
+//   A2 stiffness, between neighbouring depths, within 15 %
+//   A3 direction within 10 degrees
+// Where the reference finds no equilibrium there is a gap, counted apart from what is inside.
+#pragma once
+
+#include "sim/study/indent.h"
+#include "sim/study/reference_press.h"
+
+#include <filesystem>
+
+namespace sim {
+
+/// Springs for an organ that was baked loose, or to replace its own: a bed over the share of its
+/// extent that lies farthest along `toward`.
+struct HoldSide {
+    glm::dvec3 toward{0.0}; // 0: as baked
+    double share = 0.3;
+    double length_m = 0.01;
+};
+
+struct OrganReferenceOptions {
+    std::string organ; // name in the organ folder, or file
+    tissue::Material material;
+    HoldSide hold;
+    int places = 10;
+    std::uint64_t seed = 1;
+    ReferencePressOptions press{.depth_m = {}};
+};
+
+struct Gates {
+    double force_percent = 7.0, full_force_n = 0.5, small_force_n = 0.035;
+    double stiffness_percent = 15.0, direction_deg = 10.0;
+};
+
+/// One place and depth. Errors are ours against the reference's.
+struct ReferenceRow {
+    int place = 0;
+    double depth_m = 0.0;
+    double force_n = 0.0, reference_n = 0.0; // along the normal
+    double error_n = 0.0, error_percent = 0.0;
+    double stiffness_npm = 0.0, reference_npm = 0.0,
+           stiffness_percent = 0.0; // since the last depth
+    double direction_deg = 0.0;     // of the reference's force from the normal, along which ours is
+    bool solved = false;            // by the reference; else its columns mean nothing
+    bool a1 = false, a2 = false, a3 = false;
+};
+
+struct OrganReference {
+    int nodes = 0, tets = 0;
+    std::vector<IndentPoint> place{};
+    std::vector<ReferencePress> reference{};
+    std::vector<ReferenceRow> row{}; // place by place, depths ascending
+};
+
+/// `say` gets a line for each place. Throws as make_body() and press_reference() do.
+OrganReference run_organ_reference(const OrganReferenceOptions& options,
+                                   const std::function<void(const std::string&)>& say);
+
+/// Over the rows that were solved.
+struct ReferenceSummary {
+    int rows = 0, solved = 0, a1 = 0, a2 = 0, a3 = 0, places_inside = 0, places_to_the_end = 0;
+    double worst_n = 0.0, worst_percent = 0.0, worst_stiffness_percent = 0.0, worst_deg = 0.0;
+    double least_reached_m = 0.0;
+};
+ReferenceSummary summary_of(const OrganReferenceOptions& options, const OrganReference& study);
+
+/// reference.csv, reference.svg, reference.md, reference.json: names and texts.
+std::vector<std::pair<std::string, std::string>>
+organ_reference_files(const OrganReferenceOptions& options, const OrganReference& study);
+
+} // namespace sim

@@ -1,0 +1,85 @@
+#include "sim/study/reference_press.h"
+
+#include "tissue/mesh/refine.h"
+#include "tissue/reference/indenter.h"
+#include "tissue/response/boundary_tree.h"
+
+#include <algorithm>
+#include <ctime>
+#include <stdexcept>
+
+namespace sim {
+namespace {
+
+using glm::dvec3;
+
+constexpr double kTolerance = 1e-5; // of Newton's relative residual: forces to 1e-4
+constexpr double kCoreShare = 1.2;  // of the radius: where the tip's edges are wanted
+constexpr double kGrowth = 0.6;     // of edges per distance
+
+std::vector<std::uint8_t> held_flags(const tissue::QuadraticMesh& mesh,
+                                     const tissue::RefinedMesh& fine) {
+    std::vector<std::uint8_t> held(mesh.rest_m.size(), 0);
+    for (std::size_t i = 0; i < fine.anchored.size(); ++i)
+        held[i] = fine.anchored[i] ? tissue::kHeld : 0;
+    for (const tissue::Tet10& t : mesh.tets) {
+        for (std::size_t k = 0; k < tissue::kEdge.size(); ++k) {
+            const auto [a, b] = tissue::kEdge[k];
+            held[t[4 + k]] = held[t[a]] & held[t[b]];
+        }
+    }
+    return held;
+}
+
+} // namespace
+
+ReferencePress press_reference(const tissue::BakedOrgan& organ, const tissue::Material& material,
+                               const dvec3& place_m, const dvec3& into,
+                               const ReferencePressOptions& o,
+                               const std::function<void(double)>& progress) {
+    const bool fixed = std::count(organ.anchored.begin(), organ.anchored.end(), 1) >= 3;
+    if (organ.rigid || (organ.bed.empty() && !fixed))
+        throw std::invalid_argument("reference press: nothing holds the organ '" + organ.name +
+                                    "'");
+    const std::clock_t began = std::clock();
+    const tissue::BoundaryTree facets = tissue::make_boundary_tree(organ.mesh);
+    tissue::Press press{.place_m =
+                            tissue::position_m(facets, tissue::nearest_point(facets, place_m)),
+                        .into = into,
+                        .radius_m = o.radius_m,
+                        .depth_m = o.depth_m,
+                        .friction = o.friction,
+                        .step_m = o.step_share * o.radius_m};
+    press.newton.tolerance = kTolerance;
+    const tissue::RefinedMesh fine =
+        tissue::refined(organ.mesh, organ.anchored, organ.bed, press.place_m,
+                        {.edge_m = o.edge_share * o.radius_m,
+                         .core_m = kCoreShare * o.radius_m,
+                         .growth = kGrowth});
+    const tissue::QuadraticMesh mesh = tissue::quadratic_mesh(fine.mesh);
+    press.place_m += tissue::touch_depth_m(mesh, press) * into;
+
+    const tissue::ReferenceModel model = tissue::make_reference(
+        mesh, material, tissue::Law::neo_hooke, held_flags(mesh, fine), dvec3{0.0}, fine.bed);
+    tissue::ReferenceSystem system = tissue::make_system(model);
+    tissue::ReferenceState state = tissue::rest_state(model);
+    const tissue::PressReport report =
+        tissue::press(model, press, system, state, [&](const tissue::PressPoint& p) {
+            if (progress)
+                progress(p.depth_m);
+        });
+
+    ReferencePress out{.reached_m = report.reached_m,
+                       .nodes = static_cast<int>(mesh.rest_m.size()),
+                       .tets = static_cast<int>(mesh.tets.size()),
+                       .iterations = report.iterations};
+    for (const tissue::PressPoint& p : report.point) {
+        out.force_n.push_back(p.force_n);
+        out.penetration_m = std::max(out.penetration_m, p.penetration_m);
+        out.least_det_f = p.min_det_f;
+    }
+    out.cpu_s = static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC;
+    return out;
+}
+
+} // namespace sim

@@ -1,0 +1,38 @@
+// sim/study/reference_press.h
+// One press of a tip into an organ by the reference solver: quadratic tetrahedra refined around the
+// place, neo-Hooke, Coulomb friction, the organ's own bed. Called by the organ study; slow.
+#pragma once
+
+#include "tissue/mesh/baked_organ.h"
+
+#include <functional>
+#include <string>
+
+namespace sim {
+
+struct ReferencePressOptions {
+    double radius_m = 1.5e-3;    // of the tip, a hemisphere on a shaft
+    double friction = 0.1;       // Coulomb coefficient
+    std::vector<double> depth_m; // ascending
+    double edge_share = 0.6;     // longest edge under the tip, of the radius
+    double step_share = 0.35;    // greatest step of depth, of the radius
+};
+
+struct ReferencePress {
+    std::vector<glm::dvec3> force_n{}; // on the tip, for each depth that was reached
+    double reached_m = 0.0;            // last depth with an equilibrium
+    double penetration_m = 0.0;        // greatest that contact left
+    double least_det_f = 1.0;          // at the last depth
+    int nodes = 0, tets = 0, iterations = 0;
+    double cpu_s = 0.0;
+};
+
+/// Along `into` (unit) through the point of the body's facets nearest to `place_m`; depth 0 is
+/// where the tip first touches. `progress` (may be empty) gets depths with an equilibrium. Throws
+/// std::invalid_argument for an organ that nothing holds and for bad options.
+ReferencePress press_reference(const tissue::BakedOrgan& organ, const tissue::Material& material,
+                               const glm::dvec3& place_m, const glm::dvec3& into,
+                               const ReferencePressOptions& options,
+                               const std::function<void(double depth_m)>& progress = {});
+
+} // namespace sim
