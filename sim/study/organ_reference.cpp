@@ -97,8 +97,11 @@ OrganReference run_organ_reference(const OrganReferenceOptions& o,
         const int i = static_cast<int>(study.place.size());
         study.place.push_back(indenter.press(place, o.press.depth_m));
         const IndentPoint& p = study.place.back();
-        study.reference.push_back(
-            press_reference(*organ, o.material, p.place_m, -p.normal, o.press));
+        study.reference.push_back(press_reference(
+            *organ, o.material, p.place_m, -p.normal, o.press, [&](double depth_m, double force_n) {
+                say(fmt::format("place {:>2}: {:5.2f} mm, {:4.0f} mN", i + 1, 1e3 * depth_m,
+                                1e3 * force_n));
+            }));
         add_rows(o, i, study);
         const ReferencePress& r = study.reference.back();
         const ReferenceRow last = study.row[study.row.size() - o.press.depth_m.size() +

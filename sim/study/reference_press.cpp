@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <glm/geometric.hpp>
 #include <stdexcept>
 
 namespace sim {
@@ -14,8 +15,8 @@ namespace {
 using glm::dvec3;
 
 constexpr double kTolerance = 1e-5; // of Newton's relative residual: forces to 1e-4
-constexpr double kCoreShare = 1.2;  // of the radius: where the tip's edges are wanted
-constexpr double kGrowth = 0.6;     // of edges per distance
+constexpr double kCoreShare = 0.8;  // of the radius: where the tip's edges are wanted
+constexpr double kGrowth = 1.0;     // of edges per distance
 
 std::vector<std::uint8_t> held_flags(const tissue::QuadraticMesh& mesh,
                                      const tissue::RefinedMesh& fine) {
@@ -36,7 +37,7 @@ std::vector<std::uint8_t> held_flags(const tissue::QuadraticMesh& mesh,
 ReferencePress press_reference(const tissue::BakedOrgan& organ, const tissue::Material& material,
                                const dvec3& place_m, const dvec3& into,
                                const ReferencePressOptions& o,
-                               const std::function<void(double)>& progress) {
+                               const std::function<void(double, double)>& progress) {
     const bool fixed = std::count(organ.anchored.begin(), organ.anchored.end(), 1) >= 3;
     if (organ.rigid || (organ.bed.empty() && !fixed))
         throw std::invalid_argument("reference press: nothing holds the organ '" + organ.name +
@@ -50,7 +51,8 @@ ReferencePress press_reference(const tissue::BakedOrgan& organ, const tissue::Ma
                         .depth_m = o.depth_m,
                         .friction = o.friction,
                         .step_m = o.step_share * o.radius_m};
-    press.newton.tolerance = kTolerance;
+    press.newton = {.tolerance = kTolerance, .max_iterations = 20, .max_halvings = 0};
+    press.step_halvings = 2;
     const tissue::RefinedMesh fine =
         tissue::refined(organ.mesh, organ.anchored, organ.bed, press.place_m,
                         {.edge_m = o.edge_share * o.radius_m,
@@ -66,7 +68,7 @@ ReferencePress press_reference(const tissue::BakedOrgan& organ, const tissue::Ma
     const tissue::PressReport report =
         tissue::press(model, press, system, state, [&](const tissue::PressPoint& p) {
             if (progress)
-                progress(p.depth_m);
+                progress(p.depth_m, glm::length(p.force_n));
         });
 
     ReferencePress out{.reached_m = report.reached_m,

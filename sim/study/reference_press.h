@@ -14,8 +14,8 @@ struct ReferencePressOptions {
     double radius_m = 1.5e-3;    // of the tip, a hemisphere on a shaft
     double friction = 0.1;       // Coulomb coefficient
     std::vector<double> depth_m; // ascending
-    double edge_share = 0.6;     // longest edge under the tip, of the radius
-    double step_share = 0.35;    // greatest step of depth, of the radius
+    double edge_share = 0.8;     // longest edge under the tip, of the radius
+    double step_share = 0.5;     // greatest step of depth, of the radius
 };
 
 struct ReferencePress {
@@ -28,11 +28,12 @@ struct ReferencePress {
 };
 
 /// Along `into` (unit) through the point of the body's facets nearest to `place_m`; depth 0 is
-/// where the tip first touches. `progress` (may be empty) gets depths with an equilibrium. Throws
-/// std::invalid_argument for an organ that nothing holds and for bad options.
-ReferencePress press_reference(const tissue::BakedOrgan& organ, const tissue::Material& material,
-                               const glm::dvec3& place_m, const glm::dvec3& into,
-                               const ReferencePressOptions& options,
-                               const std::function<void(double depth_m)>& progress = {});
+/// where the tip first touches. `progress` (may be empty) gets depths with an equilibrium, and the
+/// force. Throws std::invalid_argument for an organ that nothing holds and for bad options.
+ReferencePress
+press_reference(const tissue::BakedOrgan& organ, const tissue::Material& material,
+                const glm::dvec3& place_m, const glm::dvec3& into,
+                const ReferencePressOptions& options,
+                const std::function<void(double depth_m, double force_n)>& progress = {});
 
 } // namespace sim

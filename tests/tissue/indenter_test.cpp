@@ -101,8 +101,8 @@ TEST_CASE("indenter: a sphere on a bonded layer feels the table of Hayes within 
 
 TEST_CASE("indenter: force is the slope of the work done, with and without friction") {
     // P = d(elastic energy)/d(depth) without friction; stuck skin stores what is done on it too
-    Quarter q(dvec3(12 * kRadius_m), {3, 3, 3},
-              {.edge_m = 0.6 * kRadius_m, .core_m = kRadius_m, .growth = 0.8}, 6e3, 0.45,
+    Quarter q(dvec3(10 * kRadius_m), {2, 2, 2},
+              {.edge_m = 0.8 * kRadius_m, .core_m = 0.8 * kRadius_m, .growth = 1.0}, 6e3, 0.45,
               tissue::Law::neo_hooke);
     for (const double friction : {0.0, std::numeric_limits<double>::infinity()}) {
         CAPTURE(friction);
@@ -128,8 +128,8 @@ TEST_CASE("indenter: force is the slope of the work done, with and without frict
 }
 
 TEST_CASE("indenter: halving steps and stiffening the penalty move the force by less than 1 %") {
-    Quarter q(dvec3(12 * kRadius_m), {3, 3, 3},
-              {.edge_m = 0.6 * kRadius_m, .core_m = kRadius_m, .growth = 0.8}, 6e3, 0.45,
+    Quarter q(dvec3(10 * kRadius_m), {2, 2, 2},
+              {.edge_m = 0.8 * kRadius_m, .core_m = 0.8 * kRadius_m, .growth = 1.0}, 6e3, 0.45,
               tissue::Law::neo_hooke);
     tissue::Press p{.radius_m = kRadius_m, .depth_m = {kRadius_m}, .friction = 0.1};
     const double whole_n = q.press(p).point.at(0).force_n.z;

@@ -1,0 +1,102 @@
+// tests/sim/organ_reference_test.cpp
+// The organ study beside the reference: the trainer's law on a block, and how gaps and gates are
+// told.
+#include "sim/study/organ_reference.h"
+#include "sim/study/organ_study.h"
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+
+namespace {
+
+sim::OrganReferenceOptions block() {
+    sim::OrganReferenceOptions o;
+    o.organ = "block_s12";
+    o.places = 1;
+    o.press.radius_m = 2.5e-3;
+    o.press.edge_share = 1.0;
+    o.press.depth_m = {1e-3, 2e-3};
+    return o;
+}
+
+// One place, two depths, of which the reference reached the first alone.
+sim::OrganReference halfway() {
+    sim::OrganReference study;
+    study.place.push_back({.normal = {0, 0, 1}, .force_n = {0.05, 0.2}});
+    study.reference.push_back({.force_n = {{0, 0, 0.04}}, .reached_m = 1.5e-3});
+    study.row.push_back({.depth_m = 1e-3,
+                         .force_n = 0.05,
+                         .reference_n = 0.04,
+                         .error_n = 0.01,
+                         .error_percent = 25.0,
+                         .stiffness_percent = 25.0,
+                         .solved = true,
+                         .a1 = true,
+                         .a3 = true});
+    study.row.push_back({.depth_m = 2e-3, .force_n = 0.2});
+    return study;
+}
+
+std::string file(const sim::OrganReferenceOptions& o, const sim::OrganReference& study,
+                 const char* wanted) {
+    for (const auto& [name, text] : organ_reference_files(o, study)) {
+        if (name == wanted)
+            return text;
+    }
+    return "";
+}
+
+} // namespace
+
+TEST_CASE("organ reference: shallow, on a block of 256 nodes, the law is inside A1 to A3") {
+    const auto o = block();
+    const auto study = sim::run_organ_reference(o, [](const std::string&) {});
+    const auto s = summary_of(o, study);
+    REQUIRE(s.solved == 2);
+    CHECK(s.a1 == 2);
+    CHECK(s.a2 == 2);
+    CHECK(s.a3 == 2);
+    // tighter than A1 for such small forces: 7 % of them
+    CHECK(s.worst_percent < 7.0);
+    CHECK(study.reference[0].penetration_m < 0.02 * o.press.radius_m);
+}
+
+TEST_CASE("organ reference: a wrong modulus in the law alone would be seen") {
+    // negative control: the same places, the law of tissue 1.5 times as stiff
+    auto o = block();
+    o.press.depth_m = {2e-3};
+    const auto study = sim::run_organ_reference(o, [](const std::string&) {});
+    o.material.young_pa *= 1.5;
+    sim::Indenter stiffer(std::make_shared<const tissue::BakedOrgan>(*sim::load_organ(o.organ)),
+                          o.material, o.press.radius_m);
+    const double force_n = stiffer.press(study.place[0].place_m, o.press.depth_m).force_n[0];
+    CHECK(std::abs(force_n / study.row[0].reference_n - 1.0) > 0.4);
+}
+
+TEST_CASE("organ reference: where the reference stops there is a gap, in CSV, page and summary") {
+    auto o = block();
+    const auto study = halfway();
+    const auto s = summary_of(o, study);
+    CHECK(s.rows == 2);
+    CHECK(s.solved == 1);
+    CHECK(s.places_to_the_end == 0);
+    CHECK(s.places_inside == 0);
+    CHECK(s.least_reached_m == 1.5e-3);
+    CHECK(file(o, study, "reference.csv").find(",2,0.200000,,,,0.00,,,,,,,0") != std::string::npos);
+    CHECK(file(o, study, "reference.md").find("no equilibrium at 1 of 2 depths") !=
+          std::string::npos);
+    CHECK(file(o, study, "reference.svg").find("no equilibrium beyond 1.5 mm") !=
+          std::string::npos);
+}
+
+TEST_CASE("organ reference: what cannot be pressed is refused with the value") {
+    auto o = block();
+    o.press.radius_m = 0.5;
+    CHECK_THROWS_WITH(sim::run_organ_reference(o, {}), doctest::Contains("tip radius 500"));
+    o = block();
+    o.hold = {.toward = {0, 0, -1}, .share = 1.5};
+    CHECK_THROWS_WITH(sim::run_organ_reference(o, {}), doctest::Contains("hold share = 1.5"));
+    o = block();
+    o.press.depth_m = {};
+    CHECK_THROWS_WITH(sim::run_organ_reference(o, {}), doctest::Contains("at least one depth"));
+}
