@@ -42,7 +42,8 @@ struct PressReport {
 /// found beyond reached_m. `progress` (may be empty) gets every equilibrium on the way. Throws
 /// std::invalid_argument for a radius, way or depths that are not as above, and if no face is near.
 PressReport press(const ReferenceModel& model, const Press& press, ReferenceSystem& system,
-                  ReferenceState& state, const std::function<void(const PressPoint&)>& progress = {});
+                  ReferenceState& state,
+                  const std::function<void(const PressPoint&)>& progress = {});
 
 /// Depth at which a tip on its way first touches a quadrature point of the skin: 0 on a plane,
 /// less where the skin bulges or is not square to the way.
