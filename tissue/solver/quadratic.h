@@ -38,8 +38,8 @@
 #pragma once
 
 #include "tissue/material/hyperelastic.h"
-#include "tissue/mesh/elastic_bed.h"
 #include "tissue/material/prony.h"
+#include "tissue/mesh/elastic_bed.h"
 #include "tissue/mesh/quadratic_mesh.h"
 #include "tissue/solver/block_scratch.h"
 
