@@ -58,7 +58,8 @@ struct SolidMesh {
 
 /// The corners of quadratic tetrahedra keep their numbers, mid-edge nodes follow (quadratic_mesh.h)
 /// and are fixed where both ends are. Throws as make_corotated(), make_quadratic() do, and
-/// std::invalid_argument for the rigid tier or a step that is not finite and above 0.
+/// std::invalid_argument for the rigid tier or a step that is not above 0. An infinite one is that
+/// of statics, which quadratic bodies refuse.
 Solid make_solid(Tier tier, const SolidMesh& mesh, const Material& material,
                  const glm::dvec3& gravity_mps2, double dt_s);
 
