@@ -231,9 +231,16 @@ void see_targets(TissueRig& rig, const ScopeNow& scope, ClearRays& out) noexcept
 
 glm::dvec3 skin_under(const TissueRig& rig, int tool) noexcept {
     const FemContact& contact = rig.contact[tool];
-    const glm::dvec3 place_m = place_on(rig.bodies[contact.body], contact.at);
+    const Body& body = rig.bodies[contact.body];
+    const glm::dvec3 place_m = place_on(body, contact.at);
     const Dimple dimple = dimple_of(rig, tool);
-    return dimple.body < 0 ? place_m : place_m + sunk_m(dimple, place_m) * dimple.down;
+    if (dimple.body < 0)
+        return place_m;
+    if (rig.memory[tool].grasped)
+        return place_m + dimple.depth_m * dimple.down;
+    // without the spring of the coupling, which is none of the tissue's
+    const haptics::LocalLaw law = law_on(body, contact.at, tool, 0.0);
+    return place_m + std::max(0.0, haptics::law_at(law, rig.memory[tool].x).depth_m) * dimple.down;
 }
 
 void place_targets(const TissueRig& rig, TargetPlaces& out) noexcept {

@@ -87,7 +87,7 @@ void draw_surface(const TissueRig& rig, SurfaceNow& out);
 /// How much of each target's mark the endoscope sees; all of it if nobody asks.
 void see_targets(TissueRig& rig, const ScopeNow& scope, ClearRays& out) noexcept;
 
-/// The skin under a tool that is over a body, with that dimple.
+/// The skin under a tool that is over a body, as deep as the tissue itself yields.
 glm::dvec3 skin_under(const TissueRig& rig, int tool) noexcept;
 
 /// Places of all targets now, with that dimple.

@@ -14,8 +14,14 @@ std::vector<Body> make_bodies(const LoadedScene& loaded, double step_s, const Mo
     for (std::size_t i = 0; i < loaded.organ.size(); ++i) {
         const tissue::Tier tier = choice.empty() ? kUsualTier : choice[i];
         const bool coarse = tier == tissue::Tier::quadratic && loaded.quadratic[i];
-        bodies.push_back(make_body(coarse ? loaded.quadratic[i] : loaded.organ[i],
-                                   loaded.scene.organ[i].material, tips, step_s, tier));
+        try {
+            bodies.push_back(make_body(coarse ? loaded.quadratic[i] : loaded.organ[i],
+                                       loaded.scene.organ[i].material, tips, step_s, tier));
+        } catch (const std::invalid_argument& e) {
+            throw std::invalid_argument(fmt::format("organ \"{}\" of scene \"{}\" as {} tissue: {}",
+                                                    loaded.scene.organ[i].name, loaded.scene.id,
+                                                    tissue::name_of(tier), e.what()));
+        }
     }
     return bodies;
 }

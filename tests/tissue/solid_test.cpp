@@ -6,6 +6,7 @@
 #include "tissue/reference/reference.h"
 #include "tissue/response/contact_basis.h"
 #include "tissue/response/linear_statics.h"
+#include "tissue/solver/measures.h"
 #include "tissue/solver/solid.h"
 
 #include <algorithm>
@@ -165,6 +166,10 @@ TEST_CASE("solid: a hard press on quadratic tissue settles where the converged s
             truth[body.model.dof[i] + k] = state.position_m[i][k] - model.mesh.rest_m[i][k];
         deepest_m = std::max(deepest_m, model.mesh.rest_m[i].z - state.position_m[i].z);
     }
+    // the peak stress of the loop, and of the measures, which go their own way to it
+    tissue::TissueLog log = tissue::make_tissue_log(body.model);
+    const double peak_pa = tissue::measure(body.model, body.state, {}, 0.0, log).peak_von_mises_pa;
+    CHECK(tissue::peak_von_mises_pa(solid) == doctest::Approx(peak_pa).epsilon(1e-3).scale(0.0));
     CHECK(deepest_m > 6e-3); // it is a hard press: a fifth of the thickness
     CHECK(off(moved(solid), truth) < 2e-3);
 }

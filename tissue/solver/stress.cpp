@@ -19,17 +19,23 @@ void von_mises_pa(const CorotatedModel& model, std::span<const glm::dvec3> posit
 
 double peak_von_mises_pa(const QuadraticModel& model, const QuadraticSystem& system) noexcept {
     double peak2 = 0.0;
-    for (const QuadraticTangent& tangent : system.tangent.elastic) {
-        for (const auto& point : tangent.point) {
+    const bool memory = !system.tangent.shear.empty();
+    for (std::size_t g = 0; g < system.tangent.elastic.size(); ++g) {
+        for (std::size_t q = 0; q < 4; ++q) {
+            const auto& point = system.tangent.elastic[g].point[q];
             for (std::size_t lane = 0; lane < QuadraticGroup::kLanes; ++lane) {
-                glm::dmat3 F;
-                for (int k = 0; k < 9; ++k)
+                glm::dmat3 F, T;
+                for (int k = 0; k < 9; ++k) {
                     F[k / 3][k % 3] = point[QuadraticTangent::kF + k][lane];
+                    T[k / 3][k % 3] =
+                        memory ? system.tangent.shear[g].point[q][QuadraticShear::kFM + k][lane]
+                               : model.elasticity.mu_pa * F[k / 3][k % 3];
+                }
                 const double J = glm::determinant(F);
                 if (!(J > 0.0))
                     continue;
-                const double scale = model.elasticity.mu_pa * std::pow(J, -5.0 / 3.0);
-                peak2 = std::max(peak2, scale * scale * von_mises_squared(F * glm::transpose(F)));
+                const double scale = std::pow(J, -5.0 / 3.0);
+                peak2 = std::max(peak2, scale * scale * von_mises_squared(T * glm::transpose(F)));
             }
         }
     }

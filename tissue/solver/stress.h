@@ -24,7 +24,8 @@ void von_mises_pa(const CorotatedModel& model, std::span<const glm::dvec3> posit
                   std::span<double> out_pa) noexcept;
 
 /// Peak over the quadrature points of a quadratic body where its tangent was made last. Neo-Hooke:
-/// dev(sigma) = mu J^(-5/3) dev(F F^T); a point that is inside out counts as 0.
+/// dev(sigma) = J^(-5/3) dev(F M F^T), M = mu 1 without a memory; a point that is inside out counts
+/// as 0.
 double peak_von_mises_pa(const QuadraticModel& model, const QuadraticSystem& system) noexcept;
 
 } // namespace tissue
