@@ -4,7 +4,7 @@
 // Tissue loop; bodies are made at setup.
 //
 //   linear     linear tetrahedra about the rest shape: one matrix, factored once. Cheap; what turns
-//              swells (F14 of Mueller & Gross 2004's kind), so for a gentle touch only.
+//              swells (Mueller & Gross 2004), so for a gentle touch only.
 //   corotated  linear tetrahedra that turn, tissue/solver/corotated.h. Locks where it bends and
 //              towards nu = 0.5.
 //   quadratic  ten-node neo-Hooke, tissue/solver/quadratic.h. Does not lock.
