@@ -51,10 +51,10 @@ glm::dvec3 rest_place(const Body& body, const tissue::ContactPoint& at) noexcept
 }
 
 // Modes stay good while the factor is the same and no contact has left the middle of its star.
-bool basis_still_good(const Body& body, std::span<const tissue::BasisContact> contacts) noexcept {
+bool contacts_are_there(const Body& body, std::span<const tissue::BasisContact> contacts) noexcept {
     const SoftBody& soft = *body.soft;
     constexpr double kMiddle_m = 1e-3;
-    if (soft.basis_of != soft.linearisations || soft.basis_contacts != contacts.size())
+    if (soft.basis_contacts != contacts.size() || soft.basis.modes == 0)
         return false;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         const glm::dvec3 moved = rest_place(body, contacts[i].centre) - soft.basis_rest_m[i];
@@ -65,14 +65,29 @@ bool basis_still_good(const Body& body, std::span<const tissue::BasisContact> co
     return true;
 }
 
+// How many steps the space of a quadratic body's modes serves while its contacts stay: what solves
+// cost is a multiple of the step, and K in the space is that of every step.
+constexpr int kBasisAge = 10;
+
 void compute_basis(Body& body, std::span<const tissue::BasisContact> contacts) noexcept {
     SoftBody& soft = *body.soft;
-    if (basis_still_good(body, contacts)) {
+    const bool there = contacts_are_there(body, contacts);
+    if (there && soft.basis_of == soft.linearisations) {
         std::visit(
             [&](auto& s) { tissue::refresh_contact_basis(s.model, s.state, s.system, soft.basis); },
             soft.solid);
         return;
     }
+    auto* quadratic = std::get_if<tissue::QuadraticSolid>(&soft.solid);
+    if (quadratic && there && soft.basis_age < kBasisAge) {
+        tissue::follow_contact_basis(quadratic->model, quadratic->state, quadratic->system,
+                                     soft.basis);
+        tissue::turn_shapes(soft.basis, tissue::unknowns(soft.solid), soft.shape_by_unknown);
+        soft.basis_of = soft.linearisations;
+        ++soft.basis_age;
+        return;
+    }
+    soft.basis_age = 0;
     std::visit(
         [&](auto& s) {
             tissue::compute_contact_basis(s.model, body.organ->surface, s.state, s.system, contacts,

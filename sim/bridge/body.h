@@ -26,6 +26,7 @@ struct SoftBody {
     std::vector<double> answer_m;         // A^-1 of the contact rows, 3 columns a tool
     std::vector<double> load_n;           // contact forces of the step being made
     int linearisations = 0; // counts them, so that what rests on one knows when it is old
+    int basis_age = 0;      // steps since its space was solved for
     int basis_of = -1;      // the linearisation and places that the basis was made for
     std::array<glm::dvec3, haptics::kTools> basis_rest_m{};
     std::array<bool, haptics::kTools> basis_held{};

@@ -59,6 +59,9 @@ void refresh_contact_basis(const CorotatedModel& model, const CorotatedState& st
 void compute_contact_basis(const QuadraticModel& model, const ContactSurface& surface,
                            const QuadraticState& state, QuadraticSystem& system,
                            std::span<const BasisContact> contacts, ContactBasis& basis) noexcept;
+/// The space of before under the tangent of now: no solve, new modes and frequencies in it.
+void follow_contact_basis(const QuadraticModel& model, const QuadraticState& state,
+                          QuadraticSystem& system, ContactBasis& basis) noexcept;
 void refresh_contact_basis(const QuadraticModel& model, const QuadraticState& state,
                            QuadraticSystem& system, ContactBasis& basis) noexcept;
 

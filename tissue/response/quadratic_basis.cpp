@@ -146,7 +146,41 @@ bool project(const QuadraticModel& model, const Work& w, const double* q, int ra
     return positive_eigen(turn, rank, value) != 0;
 }
 
+// The modes of M-orthonormal columns in basis.shape; of none if K there is not positive enough even
+// without geometric stiffness.
+void find_modes(const QuadraticModel& model, const Work& w, int rank, const QuadraticState& state,
+                QuadraticSystem& system, ContactBasis& basis) noexcept {
+    const std::size_t n = w.x.n;
+    double* q = basis.shape.data();
+    SmallMatrix turn;
+    std::array<double, kSmall> value{};
+    const Shares of = shares(model, system);
+    bool found = project(model, w, q, rank, of, system, turn, value);
+    for (const float share : {0.5f, 0.0f}) { // as in a solve that finds A indefinite
+        if (found)
+            break;
+        scale_geometric_stiffness(share, system);
+        found = project(model, w, q, rank, of, system, turn, value);
+    }
+    basis.modes = found ? rank : 0;
+    if (!found)
+        return;
+    turn_columns(q, turn, n, rank, w.x[0]);
+    std::copy_n(w.x[0], n * static_cast<std::size_t>(rank), q);
+    for (int j = 0; j < rank; ++j)
+        basis.lambda[j] = (value[j] - of.m) / of.k;
+    remember_modes(model, basis.shape, {basis.lambda.data(), static_cast<std::size_t>(rank)},
+                   system);
+    refresh_contact_basis(model, state, system, basis);
+}
+
 } // namespace
+
+void follow_contact_basis(const QuadraticModel& model, const QuadraticState& state,
+                          QuadraticSystem& system, ContactBasis& basis) noexcept {
+    const auto n = static_cast<std::size_t>(model.unknowns);
+    find_modes(model, split(basis, n), basis.modes, state, system, basis);
+}
 
 void compute_contact_basis(const QuadraticModel& model, const ContactSurface& surface,
                            const QuadraticState& state, QuadraticSystem& system,
@@ -160,28 +194,8 @@ void compute_contact_basis(const QuadraticModel& model, const ContactSurface& su
     const Work w = split(basis, n);
     std::array<int, kMoments> blocks{};
     const int columns = raw_columns(model, surface, contacts, system, w, blocks);
-    double* q = basis.shape.data();
-    const int rank = orthonormalise(w, blocks, columns, q);
-    SmallMatrix turn;
-    std::array<double, kSmall> value{};
-    const Shares of = shares(model, system);
-    bool found = project(model, w, q, rank, of, system, turn, value);
-    for (const float share : {0.5f, 0.0f}) { // as in a solve that finds A indefinite
-        if (found)
-            break;
-        scale_geometric_stiffness(share, system);
-        found = project(model, w, q, rank, of, system, turn, value);
-    }
-    if (!found)
-        return;
-    turn_columns(q, turn, n, rank, w.x[0]);
-    std::copy_n(w.x[0], n * static_cast<std::size_t>(rank), q);
-    for (int j = 0; j < rank; ++j)
-        basis.lambda[j] = (value[j] - of.m) / of.k;
-    basis.modes = rank;
-    remember_modes(model, basis.shape, {basis.lambda.data(), static_cast<std::size_t>(rank)},
-                   system);
-    refresh_contact_basis(model, state, system, basis);
+    const int rank = orthonormalise(w, blocks, columns, basis.shape.data());
+    find_modes(model, w, rank, state, system, basis);
 }
 
 void refresh_contact_basis(const QuadraticModel& model, const QuadraticState& state,
