@@ -78,7 +78,7 @@ TissueRig make_tissue_rig(std::vector<Body> bodies, const TissueConfig& config);
 double coupling_floor_mpn(const haptics::ShaftPose& shaft, double device_npm) noexcept;
 
 /// Makes the FEM step that answers the poses of `tools`, and fills `answer` completely.
-/// Allocates nothing outside CHOLMOD.
+/// Allocates nothing outside CHOLMOD, but where quadratic tissue factors anew.
 StepOutcome tissue_step(TissueRig& rig, const ToolsNow& tools, TissueAnswer& answer) noexcept;
 
 /// The surfaces for the picture, with the dimple under each tip that the mesh cannot resolve.

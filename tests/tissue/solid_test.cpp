@@ -228,13 +228,18 @@ TEST_CASE("solid: modes of quadratic tissue yield under the contact as exact sol
         .tangent2 = {0, 1, 0}};
     tissue::ContactBasis basis = tissue::make_contact_basis(tissue::unknowns(solid));
     const auto n = static_cast<std::size_t>(tissue::unknowns(solid));
-    for (const double force_n : {0.0, 1.0}) { // at rest, and pressed by millimetres
+    // at rest; pressed by millimetres; and ten steps later, pressed harder, by the modes of then
+    for (const double force_n : {0.0, 1.0, 1.2}) {
         CAPTURE(force_n);
+        const bool follows = force_n > 1.0;
         const std::vector<double> load =
             press(tissue::rest_m(solid), tissue::dofs(solid), {0.0, 0.0, -force_n});
-        press_steps(solid, load, 60);
-        tissue::compute_contact_basis(body.model, skin, body.state, body.system,
-                                      std::span(&contact, 1), basis);
+        press_steps(solid, load, follows ? 10 : 60);
+        if (follows)
+            tissue::follow_contact_basis(body.model, body.state, body.system, basis);
+        else
+            tissue::compute_contact_basis(body.model, skin, body.state, body.system,
+                                          std::span(&contact, 1), basis);
         REQUIRE(basis.modes == tissue::kModesPerContact);
         const double rate = 1.0 / kStep_s;
         for (const dvec3& d : {contact.normal, contact.tangent1, contact.tangent2}) {

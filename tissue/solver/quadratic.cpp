@@ -98,7 +98,8 @@ void warp_nodes(const QuadraticModel& model, QuadraticSystem& s) noexcept {
                      size2 = glm::dot(F[0], F[0]) + glm::dot(F[1], F[1]) + glm::dot(F[2], F[2]);
         constexpr double kFlat = 1e-2;
         s.warp[i] = glm::mat3(det > kFlat * size2 * std::sqrt(size2) ? F / std::cbrt(det)
-                                                                     : closest_rotation(F));
+                                                                     : closest_rotation(F)) *
+                    s.unwarp[i];
     }
 }
 

@@ -108,10 +108,12 @@ struct QuadraticModel {
     std::vector<double> mass_kg;
     // what the bed adds between them, the same for x, y and z; empty without a bed
     std::vector<double> bed_npm;
-    NodeVector<double> weight_n; // M g
+    std::vector<std::array<std::array<std::int32_t, 3>, 55>> block_place; // see refactor()
+    NodeVector<double> weight_n;                                          // M g
     // at rest, on the pattern of the unknowns
     SparsePattern pattern;
     std::vector<double> rest_stiffness_npm, rest_mass_kg;
+    std::vector<double> rest_bed_npm;   // of this, what the bed adds; empty without one
     std::vector<double> rest_shear_npm; // of this, what mu makes; empty without a memory
 };
 
@@ -153,7 +155,10 @@ struct QuadraticSystem {
     std::vector<float> ordered{};
     std::vector<double> unknown{}; // two vectors of unknowns
     std::vector<SingleFactor::Line> lines{};
-    SparseFactor exact; // of A at rest
+    SparseFactor exact;                           // of A at rest
+    SparseFactor moved;                           // of A where refactor() was last called
+    std::vector<double> fixed_matrix{}, matrix{}; // of A, what mass and bed add; A
+    std::vector<glm::mat3> unwarp{}; // inverse of the warp there: `warp` leads on from it
     SingleFactor single{};
     BlockScratch block{};
     std::vector<double> rest_stiffness_npm{}; // K at rest, in a step of dt

@@ -5,6 +5,7 @@
 #include "tissue/reference/tet10.h"
 #include "tissue/solver/quadratic_columns.h"
 #include "tissue/solver/quadratic_linear.h"
+#include "tissue/solver/quadratic_refactor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -117,6 +118,7 @@ void add_mass(const ReferenceModel& reference, QuadraticModel& m) {
 // The bed in both shapes of the stiffness at rest: between nodes, and on the pattern.
 void hold(std::span<const BedSample> bed, QuadraticModel& m) {
     m.bed_npm = bed_stiffness(m, bed);
+    m.rest_bed_npm.assign(m.rest_stiffness_npm.size(), 0.0);
     for (int column = 0; column < m.unknowns; ++column) {
         const std::int32_t from = m.place_of_unknown[column];
         for (std::int32_t k = m.pattern.column_start[column];
@@ -128,7 +130,8 @@ void hold(std::span<const BedSample> bed, QuadraticModel& m) {
             const auto first = m.mass_column.begin() + m.mass_start[node],
                        last = m.mass_column.begin() + m.mass_start[node + 1];
             const auto entry = std::find(first, last, 4 * (from / 4));
-            m.rest_stiffness_npm[k] += m.bed_npm[entry - m.mass_column.begin()];
+            m.rest_bed_npm[k] = m.bed_npm[entry - m.mass_column.begin()];
+            m.rest_stiffness_npm[k] += m.rest_bed_npm[k];
         }
     }
 }
@@ -165,6 +168,7 @@ QuadraticModel make_quadratic(const QuadraticMesh& mesh, const Material& materia
     }
     if (!bed.empty())
         hold(bed, m);
+    m.block_place = block_places(m);
     if (material.prony.empty())
         return m;
     reference.elasticity.bulk_pa = 0.0;
@@ -191,7 +195,8 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s) {
     if (!(dt_s > 0.0) || !std::isfinite(dt_s))
         throw std::invalid_argument("dt_s = " + std::to_string(dt_s) +
                                     ": must be finite and greater than 0");
-    QuadraticSystem s{.dt_s = dt_s, .exact = SparseFactor(model.pattern)};
+    QuadraticSystem s{
+        .dt_s = dt_s, .exact = SparseFactor(model.pattern), .moved = SparseFactor(model.pattern)};
     const double mass = 1.0 / (dt_s * dt_s) + model.material.damping_mass_1ps / dt_s;
     const double stiffness = 1.0 + model.material.damping_stiffness_s / dt_s;
     s.prony = prony_step(model.material, dt_s);
@@ -203,6 +208,11 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s) {
     std::vector<double> matrix(model.rest_mass_kg.size());
     for (std::size_t k = 0; k < matrix.size(); ++k)
         matrix[k] = mass * model.rest_mass_kg[k] + stiffness * s.rest_stiffness_npm[k];
+    s.fixed_matrix.resize(matrix.size());
+    for (std::size_t k = 0; k < matrix.size(); ++k) {
+        const double bed = model.rest_bed_npm.empty() ? 0.0 : model.rest_bed_npm[k];
+        s.fixed_matrix[k] = mass * model.rest_mass_kg[k] + stiffness * bed;
+    }
     if (!s.exact.factor(matrix))
         throw std::invalid_argument("the stiffness at rest is not positive definite: young_pa = " +
                                     std::to_string(model.material.young_pa));
@@ -224,6 +234,7 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s) {
     s.shear_pa.resize(remembering);
     s.stretch.resize(model.groups.size());
     s.warp.assign(nodes, glm::mat3(1.0f));
+    s.unwarp = s.warp;
     for (auto* v : {&s.start_m, &s.moved_m, &s.trial_m, &s.momentum_n, &s.internal_n, &s.inertia_n,
                     &s.residual_n, &s.way, &s.damped_n})
         v->assign(places, 0.0);

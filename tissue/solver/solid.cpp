@@ -3,6 +3,7 @@
 
 #include "tissue/mesh/quadratic_mesh.h"
 #include "tissue/solver/quadratic_columns.h"
+#include "tissue/solver/quadratic_refactor.h"
 #include "tissue/solver/stress.h"
 
 #include <algorithm>
@@ -76,6 +77,7 @@ SolidReport motion(QuadraticSolid& s, bool touched, std::span<double> du) noexce
     const std::span<double> way(s.system.unknown.data(), n), right(way.data() + n, n);
     way_and_residual(s.model, s.system, way, right);
     const LinearReport linear = solve(s.model, s.options, right, s.system, du);
+    s.most_iterations = std::max(s.most_iterations, linear.iterations);
     for (std::size_t k = 0; k < n; ++k)
         du[k] += way[k];
     return {.linear_residual = linear.relative_residual, .warped = linear.projected};
@@ -87,7 +89,9 @@ double solve_block(CorotatedSolid& s, std::span<double> block, int columns) noex
 }
 
 double solve_block(QuadraticSolid& s, std::span<double> block, int columns) noexcept {
-    return solve_columns(s.model, s.options, s.system, block, columns).relative_residual;
+    const ColumnsReport report = solve_columns(s.model, s.options, s.system, block, columns);
+    s.most_iterations = std::max(s.most_iterations, report.iterations);
+    return report.relative_residual;
 }
 
 SolidReport end(CorotatedSolid& s, std::span<const double> load_n, double relinearise_m,
@@ -106,6 +110,18 @@ SolidReport end(CorotatedSolid& s, std::span<const double> load_n, double reline
             .new_tangent = true};
 }
 
+// A factor of where the body is, once solves take long with the one of before. Counted in
+// iterations, never in time, so that runs repeat.
+void renew_factor(QuadraticSolid& s) {
+    constexpr int kManyIterations = 8, kLeastSteps = 10;
+    ++s.since_factor;
+    if (s.most_iterations > kManyIterations && s.since_factor >= kLeastSteps) {
+        refactor(s.model, s.system);
+        s.since_factor = 0;
+    }
+    s.most_iterations = 0;
+}
+
 SolidReport end(QuadraticSolid& s, std::span<const double> load_n, double relinearise_m,
                 std::span<double> du) noexcept {
     if (!s.begun)
@@ -113,6 +129,7 @@ SolidReport end(QuadraticSolid& s, std::span<const double> load_n, double reline
     s.begun = false;
     SolidReport report = of(finish(s.model, s.options, load_n, s.system, du), 0);
     advance(s.model, s.system, du, s.state);
+    renew_factor(s);
     s.drift_m += largest(du);
     report.new_tangent = s.drift_m > relinearise_m;
     if (report.new_tangent)

@@ -43,8 +43,10 @@ struct QuadraticSolid {
     QuadraticState state;
     QuadraticSystem system;
     QuadraticOptions options;
-    bool begun = false;   // linearised for the step that is being made
-    double drift_m = 0.0; // how far anything moved since its tangent was said to be new
+    int most_iterations = 0; // of the linear solves of this step
+    int since_factor = 0;    // steps since the preconditioner was factored
+    bool begun = false;      // linearised for the step that is being made
+    double drift_m = 0.0;    // how far anything moved since its tangent was said to be new
 };
 
 using Solid = std::variant<CorotatedSolid, QuadraticSolid>;
