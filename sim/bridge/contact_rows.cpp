@@ -11,6 +11,9 @@ namespace sim {
 namespace {
 
 constexpr double kOpenGap_m = 1e-4; // rounding, with a wide margin
+// Relative residual of A^-1 H^T: of the answer to what a force changes by in a step. What forces are
+// where nothing changes does not depend on it.
+constexpr double kRows = 1e-3;
 
 // A free tool takes whatever skin is nearest to `from_m`; the body that it was over wins a tie.
 void find_nearest(TissueRig& rig, int tool, const glm::dvec3& from_m, double reach_m) noexcept {
@@ -146,7 +149,7 @@ void condense_rows(TissueRig& rig, haptics::ContactProblem& problem) noexcept {
                                 block.subspan((column[i] + axis) * n, n));
             }
         }
-        tissue::solve(soft.solid, block, columns);
+        tissue::solve(soft.solid, kRows, block, columns);
         for (int i = 0; i < kTools; ++i) {
             for (int j = 0; j < kTools; ++j) {
                 const bool both = problem.row[i].active && problem.row[j].active &&
@@ -164,6 +167,11 @@ void condense_rows(TissueRig& rig, haptics::ContactProblem& problem) noexcept {
                 rig.contact[i].own_compliance = problem.compliance[i][i];
             }
         }
+    }
+    // the free motion was under the forces of before: the skin free of them is this much farther
+    for (int i = 0; i < kTools; ++i) {
+        for (int j = 0; j < kTools; ++j)
+            problem.row[i].surface_free_m += problem.compliance[i][j] * rig.contact[j].before_n;
     }
 }
 
@@ -211,14 +219,16 @@ void apply_forces(TissueRig& rig, const haptics::ContactProblem& problem,
             if (!problem.row[i].active || rig.contact[i].body != static_cast<int>(b))
                 continue;
             const glm::dvec3 force = solution.force_n[i];
+            const glm::dvec3 change = force - rig.contact[i].before_n;
             const double* x = soft.answer_m.data() + column * n;
             column += 3;
-            if (force == glm::dvec3{0.0})
+            if (force != glm::dvec3{0.0})
+                tissue::add_row(tissue::dofs(soft.solid), body.organ->surface,
+                                tissue_point(rig.contact[i].at), force, -1.0, soft.load_n);
+            if (change == glm::dvec3{0.0})
                 continue;
-            tissue::add_row(tissue::dofs(soft.solid), body.organ->surface,
-                            tissue_point(rig.contact[i].at), force, -1.0, soft.load_n);
             for (std::size_t k = 0; k < n; ++k) {
-                soft.motion_m[k] -= force.x * x[k] + force.y * x[n + k] + force.z * x[2 * n + k];
+                soft.motion_m[k] -= change.x * x[k] + change.y * x[n + k] + change.z * x[2 * n + k];
             }
         }
     }

@@ -12,14 +12,15 @@ namespace sim {
 void follow_contacts(TissueRig& rig, const ToolsNow& tools) noexcept;
 
 /// Rows of all tools near a body, condensed through the body's factor: fills `answer_m` of each
-/// soft body and the compliance blocks of `problem`.
+/// soft body and the compliance blocks of `problem`, and frees its skin of the forces of before.
 void condense_rows(TissueRig& rig, haptics::ContactProblem& problem) noexcept;
 
 /// Tip, gap and law of each active row, the tissue displaced by the step's free motion.
 void fill_rows(const TissueRig& rig, const ToolsNow& tools,
                haptics::ContactProblem& problem) noexcept;
 
-/// Adds the contact forces to the step's motion, du -= A^-1 H^T F, and keeps them in `load_n`.
+/// Adds to the step's motion what the contact forces changed by, du -= A^-1 H^T dF, and keeps all of
+/// them in `load_n`.
 void apply_forces(TissueRig& rig, const haptics::ContactProblem& problem,
                   const haptics::ContactSolution& solution) noexcept;
 

@@ -32,17 +32,27 @@ void note(const tissue::SolidReport& report, StepOutcome& outcome) noexcept {
     outcome.warped |= report.warped;
 }
 
-// A tool that touched this body in the last step will press in this one.
-bool is_pressed(const TissueRig& rig, std::size_t body) noexcept {
+// A tool that touched this body in the last step will press in this one, near enough as hard.
+bool load_before(TissueRig& rig, std::size_t body) noexcept {
+    bool pressed = false;
+    SoftBody& soft = *rig.bodies[body].soft;
+    std::fill(soft.load_n.begin(), soft.load_n.end(), 0.0);
     for (int i = 0; i < kTools; ++i) {
-        if (rig.contact[i].body == static_cast<int>(body) &&
-            (rig.memory[i].touching || rig.memory[i].grasped))
-            return true;
+        FemContact& contact = rig.contact[i];
+        if (contact.body != static_cast<int>(body) ||
+            !(rig.memory[i].touching || rig.memory[i].grasped))
+            continue;
+        pressed = true;
+        contact.before_n = contact.force_n;
+        tissue::add_row(tissue::dofs(soft.solid), rig.bodies[body].organ->surface,
+                        tissue_point(contact.at), contact.before_n, -1.0, soft.load_n);
     }
-    return false;
+    return pressed;
 }
 
 void free_motions(TissueRig& rig, StepOutcome& outcome) noexcept {
+    for (FemContact& contact : rig.contact)
+        contact.before_n = glm::dvec3{0.0};
     for (std::size_t b = 0; b < rig.bodies.size(); ++b) {
         if (!rig.bodies[b].soft)
             continue;
@@ -51,7 +61,8 @@ void free_motions(TissueRig& rig, StepOutcome& outcome) noexcept {
             std::fill(soft.motion_m.begin(), soft.motion_m.end(), 0.0);
             continue;
         }
-        note(tissue::free_motion(soft.solid, is_pressed(rig, b), soft.motion_m), outcome);
+        const bool pressed = load_before(rig, b);
+        note(tissue::free_motion(soft.solid, pressed, soft.load_n, soft.motion_m), outcome);
     }
 }
 

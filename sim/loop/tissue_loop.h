@@ -3,8 +3,9 @@
 // on until the next one. The threaded session calls it on the tissue thread, lockstep on the only
 // thread; it reads no clock.
 //
-//   follow the contact points -> free motion -> condense the rows -> solve the contact ->
-//   advance and linearise -> modes of the local model -> the answer
+//   follow the contact points -> free motion under the forces of before -> condense the rows ->
+//   solve the contact for all of the forces, move by their change -> advance and linearise ->
+//   modes of the local model -> the answer
 #pragma once
 
 #include "sim/bridge/body.h"
@@ -25,6 +26,7 @@ struct FemContact {
     haptics::SurfacePoint at;
     glm::dmat3 own_compliance{0.0}; // of the surface point there, last step
     glm::dvec3 force_n{0.0};        // on the tool
+    glm::dvec3 before_n{0.0};       // that the free motion of the step being made is under
     glm::dvec3 normal{0.0, 0.0, 1.0};
     glm::dvec3 last_tip_m{0.0};
     double speed_mps = 0.0; // of the tip over the last period

@@ -66,9 +66,9 @@ tissue::SolidReport press_steps(tissue::Solid& solid, std::span<const double> lo
     std::vector<double> du(n), answer(n);
     tissue::SolidReport worst;
     for (int s = 0; s < steps; ++s) {
-        const tissue::SolidReport free = tissue::free_motion(solid, true, du);
+        const tissue::SolidReport free = tissue::free_motion(solid, true, {}, du);
         std::copy(load_n.begin(), load_n.end(), answer.begin());
-        const double residual = tissue::solve(solid, answer, 1);
+        const double residual = tissue::solve(solid, 1e-3, answer, 1);
         for (std::size_t i = 0; i < n; ++i)
             du[i] += answer[i];
         worst = tissue::end_step(solid, load_n, 0.0, du);
@@ -199,7 +199,7 @@ TEST_CASE("solid: only the tiers that turn can be turned") {
         if (auto* s = std::get_if<tissue::CorotatedSolid>(&solid))
             tissue::linearize(s->model, s->state, kStep_s, s->system);
         for (int i = 0; i < 50; ++i) {
-            tissue::free_motion(solid, false, du);
+            tissue::free_motion(solid, false, {}, du);
             tissue::end_step(solid, load, 0.0, du);
         }
         const auto x = tissue::position_m(solid);

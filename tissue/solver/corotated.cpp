@@ -59,7 +59,8 @@ void follow_tangent(const CorotatedModel& model, std::span<const double> du,
 }
 
 StepReport free_motion(const CorotatedModel& model, const CorotatedState& state,
-                       CorotatedSystem& system, std::span<double> du) noexcept {
+                       CorotatedSystem& system, std::span<double> du,
+                       std::span<const double> load_n) noexcept {
     const auto n = static_cast<std::size_t>(model.unknowns);
     const std::span<double> right = std::span(system.work).first(n);
     const std::span<double> product = std::span(system.work).subspan(n, n);
@@ -71,6 +72,8 @@ StepReport free_motion(const CorotatedModel& model, const CorotatedState& state,
             right[model.dof[i] + k] = momentum_n[k] - system.internal_n[model.dof[i] + k];
         }
     }
+    for (std::size_t k = 0; k < load_n.size(); ++k)
+        right[k] += load_n[k];
     StepReport report{0.0, system.exact_tangent, system.inverted};
     if (system.factored) {
         std::copy(right.begin(), right.end(), du.begin());

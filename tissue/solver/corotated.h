@@ -91,10 +91,11 @@ void elastic_forces(const CorotatedModel& model, const CorotatedState& state,
 void follow_tangent(const CorotatedModel& model, std::span<const double> du,
                     CorotatedSystem& system) noexcept;
 
-/// du without contact: A du = M v/dt - f_int + f_ext. `du` has one entry per unknown; it is zero
-/// (relative residual 1) if the system could not be factored.
+/// A du = M v/dt - f_int + f_ext + load. `du` has one entry per unknown; it is zero (relative
+/// residual 1) if the system could not be factored. `load_n`: of contact; may be empty.
 StepReport free_motion(const CorotatedModel& model, const CorotatedState& state,
-                       CorotatedSystem& system, std::span<double> du) noexcept;
+                       CorotatedSystem& system, std::span<double> du,
+                       std::span<const double> load_n = {}) noexcept;
 
 /// u += du, v = du/dt.
 void advance(const CorotatedModel& model, std::span<const double> du, double dt_s,

@@ -116,9 +116,18 @@ void look_ahead(const QuadraticModel& model, const QuadraticState& state, double
     evaluate(model, s);
 }
 
+void set_load(const QuadraticModel& model, std::span<const double> load_n,
+              QuadraticSystem& s) noexcept {
+    for (std::size_t k = 0; k < s.load_n.size(); ++k) {
+        const double load = load_n.empty() ? 0.0 : load_n[k];
+        s.momentum_n[model.place_of_unknown[k]] += load - s.load_n[k];
+        s.load_n[k] = load;
+    }
+}
+
 // f + M v/dt
 void add_momentum(const QuadraticModel& model, const QuadraticState& state,
-                  QuadraticSystem& s) noexcept {
+                  std::span<const double> load_n, QuadraticSystem& s) noexcept {
     for (std::size_t i = 0; i < model.dof.size(); ++i) {
         for (int c = 0; c < 3; ++c)
             s.way[4 * i + c] = state.velocity_mps[i][c];
@@ -126,6 +135,8 @@ void add_momentum(const QuadraticModel& model, const QuadraticState& state,
     mass_product(model, 1.0 / s.dt_s, s.way, s.momentum_n);
     for (std::size_t i = 0; i < s.momentum_n.size(); ++i)
         s.momentum_n[i] += model.weight_n[i];
+    std::fill(s.load_n.begin(), s.load_n.end(), 0.0);
+    set_load(model, load_n, s);
 }
 
 // The tangent at moved_m, but with the geometric stiffness of the start. A prediction violates the
@@ -195,14 +206,14 @@ void read_motion(const QuadraticModel& model, const QuadraticSystem& s,
 
 } // namespace
 
-void linearize(const QuadraticModel& model, const QuadraticState& state,
-               QuadraticSystem& s) noexcept {
+void linearize(const QuadraticModel& model, const QuadraticState& state, QuadraticSystem& s,
+               std::span<const double> load_n) noexcept {
     for (std::size_t i = 0; i < model.dof.size(); ++i) {
         for (int c = 0; c < 3; ++c)
             s.start_m[4 * i + c] = state.position_m[i][c] - model.mesh.rest_m[i][c];
     }
     s.moved_m = s.start_m;
-    add_momentum(model, state, s);
+    add_momentum(model, state, load_n, s);
     begin_memory(model, state, s);
     const PointSums start =
         stresses(model, s.start_m, s.shear_pa, s.internal_n, s.tangent_at_start, s.stretch);
@@ -244,8 +255,8 @@ QuadraticReport finish(const QuadraticModel& model, const QuadraticOptions& opti
     for (std::size_t k = 0; k < du.size(); ++k) {
         const std::int32_t at = model.place_of_unknown[k];
         s.moved_m[at] = s.start_m[at] + du[k];
-        s.momentum_n[at] += load_n[k];
     }
+    set_load(model, load_n, s);
     evaluate(model, s);
     if (!(s.min_det_f > 0.0)) { // the step leads out of the law: shorten it from where it was seen
         s.moved_m = s.trial_m;

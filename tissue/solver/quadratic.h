@@ -146,7 +146,8 @@ struct QuadraticSystem {
     std::vector<QuadraticStretch> stretch{};
     std::vector<glm::mat3> warp{}; // of each node: mean F around it, of volume 1
     NodeVector<double> start_m{}, moved_m{}, trial_m{}; // displacements from rest
-    NodeVector<double> momentum_n{};                    // M v/dt + weight
+    NodeVector<double> momentum_n{};                    // M v/dt + weight + load
+    std::vector<double> load_n{};                       // of these, on the unknowns
     NodeVector<double> internal_n{}, inertia_n{}, residual_n{}, way{}, damped_n{};
     NodeVector<float> b{}, x{}, r{}, z{}, p{}, q{};
     std::vector<float>
@@ -197,9 +198,10 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s);
 
 /// Residual and tangent where v + gain leads in dt, or v, or at `state` itself: the first that is
 /// better than to stand still. If a tet is inside out at `state`, the body recovers: A and residual
-/// are those of the linear law about the rest shape. No allocation, here and below.
-void linearize(const QuadraticModel& model, const QuadraticState& state,
-               QuadraticSystem& system) noexcept;
+/// are those of the linear law about the rest shape. `load_n`: on the unknowns, beside the weight;
+/// may be empty. No allocation, here and below.
+void linearize(const QuadraticModel& model, const QuadraticState& state, QuadraticSystem& system,
+               std::span<const double> load_n = {}) noexcept;
 
 /// A x = b for one right-hand side on the unknowns, at the last linearisation. Starts from the
 /// modes of remember_modes(), if any (quadratic_columns.h).
@@ -226,8 +228,8 @@ void way_and_residual(const QuadraticModel& model, const QuadraticSystem& system
 QuadraticReport free_motion(const QuadraticModel& model, const QuadraticOptions& options,
                             QuadraticSystem& system, std::span<double> du) noexcept;
 
-/// The end of a step with contact: `du` is way + A^-1 (residual + load) and more or less right, and
-/// Newton goes on from there under the same load until it is. Leaves A and the residual where the
+/// The end of a step with contact: `du` is way + A^-1 residual under `load_n` instead of that of
+/// linearize(), more or less, and Newton goes on from there under it until it is. Leaves A and the residual where the
 /// step ends, for right-hand sides there. A recovering body: nothing to be done.
 QuadraticReport finish(const QuadraticModel& model, const QuadraticOptions& options,
                        std::span<const double> load_n, QuadraticSystem& system,

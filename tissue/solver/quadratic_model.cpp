@@ -242,6 +242,7 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s) {
         v->assign(places, 0.0f);
     s.ordered.resize(static_cast<std::size_t>(model.unknowns));
     s.unknown.resize(2 * static_cast<std::size_t>(model.unknowns));
+    s.load_n.assign(static_cast<std::size_t>(model.unknowns), 0.0);
     s.lines.resize(static_cast<std::size_t>(s.single.most_lines));
     s.block = make_block_scratch(model, s.single.order);
     return s;

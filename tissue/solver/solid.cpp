@@ -52,8 +52,9 @@ double largest(std::span<const double> values) noexcept {
     return most;
 }
 
-SolidReport motion(CorotatedSolid& s, bool, std::span<double> du) noexcept {
-    const StepReport report = free_motion(s.model, s.state, s.system, du);
+SolidReport motion(CorotatedSolid& s, bool, std::span<const double> load_n,
+                   std::span<double> du) noexcept {
+    const StepReport report = free_motion(s.model, s.state, s.system, du, load_n);
     return {.linear_residual = report.relative_residual,
             .inverted = report.inverted,
             .warped = !report.exact_tangent};
@@ -68,8 +69,9 @@ SolidReport of(const QuadraticReport& report, int needed) noexcept {
 }
 
 // One Newton iteration from where the step begins: contact will be added to it.
-SolidReport motion(QuadraticSolid& s, bool touched, std::span<double> du) noexcept {
-    linearize(s.model, s.state, s.system);
+SolidReport motion(QuadraticSolid& s, bool touched, std::span<const double> load_n,
+                   std::span<double> du) noexcept {
+    linearize(s.model, s.state, s.system, load_n);
     s.begun = true;
     if (!touched || s.system.recovering)
         return of(free_motion(s.model, s.options, s.system, du), 1);
@@ -83,13 +85,16 @@ SolidReport motion(QuadraticSolid& s, bool touched, std::span<double> du) noexce
     return {.linear_residual = linear.relative_residual, .warped = linear.projected};
 }
 
-double solve_block(CorotatedSolid& s, std::span<double> block, int columns) noexcept {
+double solve_block(CorotatedSolid& s, double, std::span<double> block, int columns) noexcept {
     s.system.factor.solve(block, columns);
     return 0.0;
 }
 
-double solve_block(QuadraticSolid& s, std::span<double> block, int columns) noexcept {
-    const ColumnsReport report = solve_columns(s.model, s.options, s.system, block, columns);
+double solve_block(QuadraticSolid& s, double tolerance, std::span<double> block,
+                   int columns) noexcept {
+    QuadraticOptions options = s.options;
+    options.linear_tolerance = tolerance;
+    const ColumnsReport report = solve_columns(s.model, options, s.system, block, columns);
     s.most_iterations = std::max(s.most_iterations, report.iterations);
     return report.relative_residual;
 }
@@ -207,12 +212,13 @@ std::span<const glm::dvec3> position_m(const Solid& solid) noexcept {
                       solid);
 }
 
-SolidReport free_motion(Solid& solid, bool touched, std::span<double> du) noexcept {
-    return std::visit([&](auto& s) { return motion(s, touched, du); }, solid);
+SolidReport free_motion(Solid& solid, bool touched, std::span<const double> load_n,
+                        std::span<double> du) noexcept {
+    return std::visit([&](auto& s) { return motion(s, touched, load_n, du); }, solid);
 }
 
-double solve(Solid& solid, std::span<double> block, int columns) noexcept {
-    return std::visit([&](auto& s) { return solve_block(s, block, columns); }, solid);
+double solve(Solid& solid, double tolerance, std::span<double> block, int columns) noexcept {
+    return std::visit([&](auto& s) { return solve_block(s, tolerance, block, columns); }, solid);
 }
 
 SolidReport end_step(Solid& solid, std::span<const double> load_n, double relinearise_m,

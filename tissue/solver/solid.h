@@ -1,6 +1,8 @@
 // tissue/solver/solid.h
 // A deforming body of any tier, in the pieces of a step between which sim/ puts the contact solve:
-//   free_motion -> solve the rows of the contact -> du += A^-1 H^T F -> end_step
+//   free_motion under the load of before -> solve the rows of the contact ->
+//   du += A^-1 H^T (F - F before) -> end_step
+// Near enough serves as A^-1 there: where the load stays, it plays no part.
 // Tissue loop; bodies are made at setup.
 //
 //   linear     linear tetrahedra about the rest shape: one matrix, factored once. Cheap; what turns
@@ -84,13 +86,15 @@ struct SolidReport {
     bool new_tangent = false; // what rests on the one of before is old
 };
 
-/// The motion that the body would make without contact, on the unknowns. `touched`: it will be
-/// pressed: then only what one linearisation says, which the contact is added to.
-SolidReport free_motion(Solid& solid, bool touched, std::span<double> du) noexcept;
+/// The motion that the body would make under a load, on the unknowns. `touched`: the load will
+/// change: then only what one linearisation says, which the contact is added to. `load_n`: may be
+/// empty, as in end_step().
+SolidReport free_motion(Solid& solid, bool touched, std::span<const double> load_n,
+                        std::span<double> du) noexcept;
 
-/// A x = b in place for `columns` right-hand sides, stored one after another. Returns the worst
-/// relative residual, 0 for a direct solve.
-double solve(Solid& solid, std::span<double> block, int columns) noexcept;
+/// A x = b in place for `columns` right-hand sides, stored one after another, to the relative
+/// residual `tolerance` where they are solved by iteration. Returns the worst, 0 for a direct solve.
+double solve(Solid& solid, double tolerance, std::span<double> block, int columns) noexcept;
 
 /// Moves by `du` and linearises there, or follows the tangent while nothing has drifted farther
 /// than `relinearise_m` since. `load_n`: of the contact, on the unknowns; `du` may be corrected.
