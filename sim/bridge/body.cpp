@@ -143,10 +143,15 @@ Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Ma
     const int unknowns = tissue::unknowns(solid);
     const auto n = static_cast<std::size_t>(unknowns);
     std::vector<tissue::SkinFrame> frame = tissue::make_skin_frames(skin, tissue::rest_m(solid));
-    body.soft.emplace(SoftBody{std::move(solid), tissue::make_contact_basis(unknowns),
-                               std::move(frame), std::vector<double>(n * tissue::kMaxBasis),
-                               std::vector<double>(n), std::vector<double>(n * 3 * haptics::kTools),
-                               std::vector<double>(n)});
+    const std::vector<double> rows(n * 3 * haptics::kTools), unknown(n);
+    body.soft.emplace(SoftBody{.solid = std::move(solid),
+                               .basis = tissue::make_contact_basis(unknowns),
+                               .skin_frame = std::move(frame),
+                               .shape_by_unknown = std::vector<double>(n * tissue::kMaxBasis),
+                               .motion_m = unknown,
+                               .rows = rows,
+                               .answer_m = rows,
+                               .load_n = unknown});
     tissue::place_surface(skin, body.soft->skin_frame, tissue::position_m(body.soft->solid),
                           body.skin_m, body.skin_normal);
     return body;

@@ -23,8 +23,12 @@ struct SoftBody {
     std::vector<tissue::SkinFrame> skin_frame;
     std::vector<double> shape_by_unknown; // the basis, one line of modes per unknown
     std::vector<double> motion_m;         // du of the step being made
-    std::vector<double> answer_m;         // A^-1 of the contact rows, 3 columns a tool
+    std::vector<double> rows;             // of the contact, 3 columns for each tool
+    std::vector<double> answer_m;         // A^-1 of them
     std::vector<double> load_n;           // contact forces of the step being made
+    std::array<haptics::SurfacePoint, haptics::kTools> answer_at{}; // where the rows are
+    std::size_t answers = 0;                                        // tools with rows
+    int answers_of = -1;                                            // the linearisation
     int linearisations = 0; // counts them, so that what rests on one knows when it is old
     int basis_age = 0;      // steps since its space was solved for
     int basis_of = -1;      // the linearisation and places that the basis was made for

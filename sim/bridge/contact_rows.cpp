@@ -11,9 +11,9 @@ namespace sim {
 namespace {
 
 constexpr double kOpenGap_m = 1e-4; // rounding, with a wide margin
-// Relative residual of A^-1 H^T: of the answer to what a force changes by in a step. What forces are
-// where nothing changes does not depend on it.
-constexpr double kRows = 1e-3;
+// Relative residual of A^-1 H^T: of the answer to what a force changes by in a step. What forces
+// are where nothing changes does not depend on it.
+constexpr double kRows = 3e-2;
 
 // A free tool takes whatever skin is nearest to `from_m`; the body that it was over wins a tie.
 void find_nearest(TissueRig& rig, int tool, const glm::dvec3& from_m, double reach_m) noexcept {
@@ -85,6 +85,82 @@ void close_jaws(TissueRig& rig, int tool, const haptics::ToolTip& tip) noexcept 
     haptics::begin_grasp(row, tip.grip, rig.memory[tool]);
 }
 
+// The tools that have a row on one body.
+struct RowsOf {
+    std::array<int, kTools> tool{};
+    std::size_t count = 0;
+};
+
+// How much of the answers of before still serves.
+enum class Known { nothing, about, all };
+
+Known what_is_known(const TissueRig& rig, const RowsOf& rows, const SoftBody& soft) noexcept {
+    if (soft.answers != rows.count)
+        return Known::nothing;
+    for (std::size_t r = 0; r < rows.count; ++r) {
+        const haptics::SurfacePoint &at = rig.contact[rows.tool[r]].at, &was = soft.answer_at[r];
+        if (at.triangle != was.triangle || at.weight != was.weight)
+            return Known::nothing;
+    }
+    return soft.answers_of == soft.linearisations ? Known::all : Known::about;
+}
+
+// A^-1 H^T of the tools on a body.
+void answer_rows(const TissueRig& rig, const RowsOf& rows, Body& body) noexcept {
+    SoftBody& soft = *body.soft;
+    const Known known = what_is_known(rig, rows, soft);
+    if (known == Known::all)
+        return;
+    const std::size_t n = soft.motion_m.size();
+    const std::span<double> block(soft.rows.data(), 3 * n * rows.count);
+    std::fill(block.begin(), block.end(), 0.0);
+    for (std::size_t r = 0; r < rows.count; ++r) {
+        soft.answer_at[r] = rig.contact[rows.tool[r]].at;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            glm::dvec3 direction{0.0};
+            direction[static_cast<int>(axis)] = 1.0;
+            tissue::add_row(tissue::dofs(soft.solid), body.organ->surface,
+                            tissue_point(soft.answer_at[r]), direction, 1.0,
+                            block.subspan((3 * r + axis) * n, n));
+        }
+    }
+    const std::span<const double> before(soft.answer_m.data(), block.size());
+    tissue::solve(soft.solid, kRows, known == Known::about ? before : std::span<const double>{},
+                  block, static_cast<int>(3 * rows.count));
+    std::swap(soft.rows, soft.answer_m);
+    soft.answers = rows.count;
+    soft.answers_of = soft.linearisations;
+}
+
+void read_compliance(const TissueRig& rig, const RowsOf& rows, const Body& body,
+                     haptics::ContactProblem& problem) noexcept {
+    const SoftBody& soft = *body.soft;
+    const std::size_t n = soft.motion_m.size();
+    for (std::size_t r = 0; r < rows.count; ++r) {
+        for (std::size_t c = 0; c < rows.count; ++c) {
+            glm::dmat3& W = problem.compliance[rows.tool[r]][rows.tool[c]];
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                W[static_cast<int>(axis)] =
+                    tissue::row_value(tissue::dofs(soft.solid), body.organ->surface,
+                                      tissue_point(rig.contact[rows.tool[r]].at),
+                                      std::span(soft.answer_m).subspan((3 * c + axis) * n, n));
+            }
+        }
+    }
+}
+
+// As the contact solve wants it; what is solved by iteration is so only up to its residual.
+void make_symmetric(haptics::ContactProblem& problem) noexcept {
+    for (int i = 0; i < kTools; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            const glm::dmat3 mean =
+                0.5 * (problem.compliance[i][j] + glm::transpose(problem.compliance[j][i]));
+            problem.compliance[i][j] = mean;
+            problem.compliance[j][i] = glm::transpose(mean);
+        }
+    }
+}
+
 } // namespace
 
 void follow_contacts(TissueRig& rig, const ToolsNow& tools) noexcept {
@@ -122,51 +198,22 @@ void condense_rows(TissueRig& rig, haptics::ContactProblem& problem) noexcept {
     for (auto& line : problem.compliance)
         line.fill(glm::dmat3{0.0});
     for (std::size_t b = 0; b < rig.bodies.size(); ++b) {
-        Body& body = rig.bodies[b];
-        if (!body.soft)
+        if (!rig.bodies[b].soft)
             continue;
-        SoftBody& soft = *body.soft;
-        const std::size_t n = soft.motion_m.size();
-        std::array<int, kTools> column{};
-        int columns = 0;
+        RowsOf rows;
         for (int i = 0; i < kTools; ++i) {
-            column[i] = columns;
             if (problem.row[i].active && rig.contact[i].body == static_cast<int>(b))
-                columns += 3;
+                rows.tool[rows.count++] = i;
         }
-        if (columns == 0)
+        if (rows.count == 0)
             continue;
-        const std::span<double> block(soft.answer_m.data(), n * columns);
-        std::fill(block.begin(), block.end(), 0.0);
-        for (int i = 0; i < kTools; ++i) {
-            if (!problem.row[i].active || rig.contact[i].body != static_cast<int>(b))
-                continue;
-            for (int axis = 0; axis < 3; ++axis) {
-                glm::dvec3 direction{0.0};
-                direction[axis] = 1.0;
-                tissue::add_row(tissue::dofs(soft.solid), body.organ->surface,
-                                tissue_point(rig.contact[i].at), direction, 1.0,
-                                block.subspan((column[i] + axis) * n, n));
-            }
-        }
-        tissue::solve(soft.solid, kRows, block, columns);
-        for (int i = 0; i < kTools; ++i) {
-            for (int j = 0; j < kTools; ++j) {
-                const bool both = problem.row[i].active && problem.row[j].active &&
-                                  rig.contact[i].body == static_cast<int>(b) &&
-                                  rig.contact[j].body == static_cast<int>(b);
-                if (!both)
-                    continue;
-                for (int axis = 0; axis < 3; ++axis) {
-                    problem.compliance[i][j][axis] = tissue::row_value(
-                        tissue::dofs(soft.solid), body.organ->surface,
-                        tissue_point(rig.contact[i].at), block.subspan((column[j] + axis) * n, n));
-                }
-            }
-            if (problem.row[i].active && rig.contact[i].body == static_cast<int>(b)) {
-                rig.contact[i].own_compliance = problem.compliance[i][i];
-            }
-        }
+        answer_rows(rig, rows, rig.bodies[b]);
+        read_compliance(rig, rows, rig.bodies[b], problem);
+    }
+    make_symmetric(problem);
+    for (int i = 0; i < kTools; ++i) {
+        if (problem.row[i].active)
+            rig.contact[i].own_compliance = problem.compliance[i][i];
     }
     // the free motion was under the forces of before: the skin free of them is this much farther
     for (int i = 0; i < kTools; ++i) {

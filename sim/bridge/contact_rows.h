@@ -19,8 +19,8 @@ void condense_rows(TissueRig& rig, haptics::ContactProblem& problem) noexcept;
 void fill_rows(const TissueRig& rig, const ToolsNow& tools,
                haptics::ContactProblem& problem) noexcept;
 
-/// Adds to the step's motion what the contact forces changed by, du -= A^-1 H^T dF, and keeps all of
-/// them in `load_n`.
+/// Adds to the step's motion what the contact forces changed by, du -= A^-1 H^T dF, and keeps all
+/// of them in `load_n`.
 void apply_forces(TissueRig& rig, const haptics::ContactProblem& problem,
                   const haptics::ContactSolution& solution) noexcept;
 

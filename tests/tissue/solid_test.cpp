@@ -68,7 +68,7 @@ tissue::SolidReport press_steps(tissue::Solid& solid, std::span<const double> lo
     for (int s = 0; s < steps; ++s) {
         const tissue::SolidReport free = tissue::free_motion(solid, true, {}, du);
         std::copy(load_n.begin(), load_n.end(), answer.begin());
-        const double residual = tissue::solve(solid, 1e-3, answer, 1);
+        const double residual = tissue::solve(solid, 1e-3, {}, answer, 1);
         for (std::size_t i = 0; i < n; ++i)
             du[i] += answer[i];
         worst = tissue::end_step(solid, load_n, 0.0, du);

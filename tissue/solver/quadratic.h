@@ -229,8 +229,8 @@ QuadraticReport free_motion(const QuadraticModel& model, const QuadraticOptions&
                             QuadraticSystem& system, std::span<double> du) noexcept;
 
 /// The end of a step with contact: `du` is way + A^-1 residual under `load_n` instead of that of
-/// linearize(), more or less, and Newton goes on from there under it until it is. Leaves A and the residual where the
-/// step ends, for right-hand sides there. A recovering body: nothing to be done.
+/// linearize(), more or less, and Newton goes on from there under it until it is. Leaves A and the
+/// residual where the step ends, for right-hand sides there. A recovering body: nothing to be done.
 QuadraticReport finish(const QuadraticModel& model, const QuadraticOptions& options,
                        std::span<const double> load_n, QuadraticSystem& system,
                        std::span<double> du) noexcept;

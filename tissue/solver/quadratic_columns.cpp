@@ -85,13 +85,15 @@ struct Gradients {
     bool indefinite = false;
 };
 
-// x = what the known modes say, and r = b - A x from r = b.
-void start(const QuadraticModel& model, QuadraticSystem& s) noexcept {
-    std::fill(s.block.x.begin(), s.block.x.end(), ColumnLine{});
+// x = what the known modes say if none is given, and r = b - A x from r = b.
+void start(const QuadraticModel& model, bool given, QuadraticSystem& s) noexcept {
+    if (!given)
+        std::fill(s.block.x.begin(), s.block.x.end(), ColumnLine{});
     std::fill(s.block.p.begin(), s.block.p.end(), ColumnLine{});
-    if (s.block.known.modes == 0)
+    if (!given && s.block.known.modes == 0)
         return;
-    add_known(s.block.known, s.block.r, s.block.x);
+    if (!given)
+        add_known(s.block.known, s.block.r, s.block.x);
     s.block.p = s.block.x;
     multiply(model, s);
     ColumnScalars back;
@@ -101,10 +103,10 @@ void start(const QuadraticModel& model, QuadraticSystem& s) noexcept {
 
 // From r = b. A column that is done stays as it is: its alpha and beta are zero.
 Gradients conjugate_gradients(const QuadraticModel& model, const QuadraticOptions& options,
-                              QuadraticSystem& s) noexcept {
+                              bool given, QuadraticSystem& s) noexcept {
     Gradients report;
     report.size2 = products_of(s.block.r, s.block.r);
-    start(model, s);
+    start(model, given, s);
     report.left2 = products_of(s.block.r, s.block.r);
     const double enough = options.linear_tolerance * options.linear_tolerance;
     std::array<bool, kLanes> on{};
@@ -145,13 +147,16 @@ Gradients conjugate_gradients(const QuadraticModel& model, const QuadraticOption
 
 void solve_group(const QuadraticModel& model, const QuadraticOptions& options,
                  std::span<double> block, const Group& group, std::span<double> residual,
-                 QuadraticSystem& s, ColumnsReport& report) noexcept {
+                 std::span<const double> first, QuadraticSystem& s,
+                 ColumnsReport& report) noexcept {
     Gradients done;
     for (const float share : {1.0f, 0.5f, 0.0f}) { // as solve_nodes()
         if (share < 1.0f)
             scale_geometric_stiffness(share, s);
         read(model, block, group, s.block.r);
-        done = conjugate_gradients(model, options, s);
+        if (!first.empty())
+            read(model, first, group, s.block.x);
+        done = conjugate_gradients(model, options, !first.empty(), s);
         report.iterations += done.iterations;
         if (!done.indefinite)
             break;
@@ -204,7 +209,7 @@ void remember_modes(const QuadraticModel& model, std::span<const double> shape,
 
 ColumnsReport solve_columns(const QuadraticModel& model, const QuadraticOptions& options,
                             QuadraticSystem& system, std::span<double> block, int columns,
-                            std::span<double> residual) noexcept {
+                            std::span<double> residual, std::span<const double> first) noexcept {
     ColumnsReport report;
     const auto n = static_cast<std::size_t>(model.unknowns);
     if (system.recovering) {
@@ -214,7 +219,7 @@ ColumnsReport solve_columns(const QuadraticModel& model, const QuadraticOptions&
         return report;
     }
     for_groups(model, columns, [&](const Group& group) {
-        solve_group(model, options, block, group, residual, system, report);
+        solve_group(model, options, block, group, residual, first, system, report);
     });
     return report;
 }

@@ -34,11 +34,13 @@ void scale_geometric_stiffness(float share, QuadraticSystem& system) noexcept;
 /// A X = B in place, `columns` columns on the unknowns, one after the other. A column stops at the
 /// tolerance, whatever the others do; its answer does not depend on them unless A is indefinite on
 /// one of them: then its group begins again without (half of) the geometric stiffness, as in
-/// solve(), and so do later groups. `residual`: of each column, or empty. A recovering body solves
-/// exactly. No allocation, here and below.
+/// solve(), and so do later groups. `residual`: of each column, or empty. `first`: what to start
+/// from instead of the known modes, as `block`, or empty. A recovering body solves exactly. No
+/// allocation, here and below.
 ColumnsReport solve_columns(const QuadraticModel& model, const QuadraticOptions& options,
                             QuadraticSystem& system, std::span<double> block, int columns,
-                            std::span<double> residual = {}) noexcept;
+                            std::span<double> residual = {},
+                            std::span<const double> first = {}) noexcept;
 
 /// X <- A0^-1 B, A0 what approximates A: the preconditioner of the solve alone.
 void precondition_columns(const QuadraticModel& model, QuadraticSystem& system,

@@ -78,23 +78,32 @@ SolidReport motion(QuadraticSolid& s, bool touched, std::span<const double> load
     const std::size_t n = du.size();
     const std::span<double> way(s.system.unknown.data(), n), right(way.data() + n, n);
     way_and_residual(s.model, s.system, way, right);
-    const LinearReport linear = solve(s.model, s.options, right, s.system, du);
+    // as far as Newton's iteration would go, but at least a tenth of what is left
+    QuadraticOptions options = s.options;
+    constexpr double kLeast = 0.1, kShare = 0.3;
+    options.linear_tolerance =
+        std::clamp(kShare * options.newton_tolerance / s.system.residual, options.linear_tolerance,
+                   std::max(kLeast, options.linear_tolerance));
+    const LinearReport linear = solve(s.model, options, right, s.system, du);
     s.most_iterations = std::max(s.most_iterations, linear.iterations);
     for (std::size_t k = 0; k < n; ++k)
         du[k] += way[k];
-    return {.linear_residual = linear.relative_residual, .warped = linear.projected};
+    return {.linear_residual = linear.relative_residual * s.system.residual,
+            .warped = linear.projected};
 }
 
-double solve_block(CorotatedSolid& s, double, std::span<double> block, int columns) noexcept {
+double solve_block(CorotatedSolid& s, double, std::span<const double>, std::span<double> block,
+                   int columns) noexcept {
     s.system.factor.solve(block, columns);
     return 0.0;
 }
 
-double solve_block(QuadraticSolid& s, double tolerance, std::span<double> block,
-                   int columns) noexcept {
+double solve_block(QuadraticSolid& s, double tolerance, std::span<const double> first,
+                   std::span<double> block, int columns) noexcept {
     QuadraticOptions options = s.options;
     options.linear_tolerance = tolerance;
-    const ColumnsReport report = solve_columns(s.model, options, s.system, block, columns);
+    const ColumnsReport report =
+        solve_columns(s.model, options, s.system, block, columns, {}, first);
     s.most_iterations = std::max(s.most_iterations, report.iterations);
     return report.relative_residual;
 }
@@ -217,8 +226,10 @@ SolidReport free_motion(Solid& solid, bool touched, std::span<const double> load
     return std::visit([&](auto& s) { return motion(s, touched, load_n, du); }, solid);
 }
 
-double solve(Solid& solid, double tolerance, std::span<double> block, int columns) noexcept {
-    return std::visit([&](auto& s) { return solve_block(s, tolerance, block, columns); }, solid);
+double solve(Solid& solid, double tolerance, std::span<const double> first, std::span<double> block,
+             int columns) noexcept {
+    return std::visit([&](auto& s) { return solve_block(s, tolerance, first, block, columns); },
+                      solid);
 }
 
 SolidReport end_step(Solid& solid, std::span<const double> load_n, double relinearise_m,

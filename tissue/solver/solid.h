@@ -77,7 +77,8 @@ std::span<const glm::dvec3> position_m(const Solid& solid) noexcept;
 
 /// What a step had to do, of one body.
 struct SolidReport {
-    double linear_residual = 0.0; // |A x - b| / |b|, the worst
+    // |A x - b| / |b|, the worst; where Newton goes on, of all forces as `residual`
+    double linear_residual = 0.0;
     // quadratic: nonlinear, as QuadraticReport; corotated: of a descent, as StepEnd
     double residual = 0.0;
     int iterations = 0;       // Newton's, beyond the first of a step; 0: one was enough
@@ -93,8 +94,10 @@ SolidReport free_motion(Solid& solid, bool touched, std::span<const double> load
                         std::span<double> du) noexcept;
 
 /// A x = b in place for `columns` right-hand sides, stored one after another, to the relative
-/// residual `tolerance` where they are solved by iteration. Returns the worst, 0 for a direct solve.
-double solve(Solid& solid, double tolerance, std::span<double> block, int columns) noexcept;
+/// residual `tolerance` where they are solved by iteration; that starts from `first`, as `block`,
+/// if it is not empty. Returns the worst, 0 for a direct solve.
+double solve(Solid& solid, double tolerance, std::span<const double> first, std::span<double> block,
+             int columns) noexcept;
 
 /// Moves by `du` and linearises there, or follows the tangent while nothing has drifted farther
 /// than `relinearise_m` since. `load_n`: of the contact, on the unknowns; `du` may be corrected.
