@@ -65,9 +65,10 @@ bool contacts_are_there(const Body& body, std::span<const tissue::BasisContact> 
     return true;
 }
 
-// How many steps the space of a quadratic body's modes serves while its contacts stay: what solves
-// cost is a multiple of the step, and K in the space is that of every step.
-constexpr int kBasisAge = 10;
+// How far a quadratic body may move from where the space of its modes was solved for, while its
+// contacts stay: what solves cost is a multiple of the step, and K in the space is that of every
+// step.
+constexpr double kBasisDrift_m = 5e-3;
 
 void compute_basis(Body& body, std::span<const tissue::BasisContact> contacts) noexcept {
     SoftBody& soft = *body.soft;
@@ -79,15 +80,14 @@ void compute_basis(Body& body, std::span<const tissue::BasisContact> contacts) n
         return;
     }
     auto* quadratic = std::get_if<tissue::QuadraticSolid>(&soft.solid);
-    if (quadratic && there && soft.basis_age < kBasisAge) {
+    if (quadratic && there && soft.basis_drift_m < kBasisDrift_m) {
         tissue::follow_contact_basis(quadratic->model, quadratic->state, quadratic->system,
                                      soft.basis);
         tissue::turn_shapes(soft.basis, tissue::unknowns(soft.solid), soft.shape_by_unknown);
         soft.basis_of = soft.linearisations;
-        ++soft.basis_age;
         return;
     }
-    soft.basis_age = 0;
+    soft.basis_drift_m = 0.0;
     std::visit(
         [&](auto& s) {
             tissue::compute_contact_basis(s.model, body.organ->surface, s.state, s.system, contacts,

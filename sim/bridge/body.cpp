@@ -151,7 +151,8 @@ Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Ma
                                .motion_m = unknown,
                                .rows = rows,
                                .answer_m = rows,
-                               .load_n = unknown});
+                               .load_n = unknown,
+                               .drift_m = unknown});
     tissue::place_surface(skin, body.soft->skin_frame, tissue::position_m(body.soft->solid),
                           body.skin_m, body.skin_normal);
     return body;

@@ -26,17 +26,19 @@ struct SoftBody {
     std::vector<double> rows;             // of the contact, 3 columns for each tool
     std::vector<double> answer_m;         // A^-1 of them
     std::vector<double> load_n;           // contact forces of the step being made
+    std::vector<double> drift_m;          // since it last was not still
     std::array<haptics::SurfacePoint, haptics::kTools> answer_at{}; // where the rows are
     std::size_t answers = 0;                                        // tools with rows
     int answers_of = -1;                                            // the linearisation
-    int linearisations = 0; // counts them, so that what rests on one knows when it is old
-    int basis_age = 0;      // steps since its space was solved for
-    int basis_of = -1;      // the linearisation and places that the basis was made for
+    int answers_age = 0;                                            // steps since
+    int linearisations = 0;     // counts them, so that what rests on one knows when it is old
+    double basis_drift_m = 0.0; // how far anything moved since its space was solved for
+    int basis_of = -1;          // the linearisation and places that the basis was made for
     std::array<glm::dvec3, haptics::kTools> basis_rest_m{};
     std::array<bool, haptics::kTools> basis_held{};
     std::size_t basis_contacts = 0;
-    double slow_s = 0.0; // for how long nothing has touched it and nothing has moved
-    bool resting = true; // nothing touches it and nothing moves: steps cost nothing
+    double still_s = 0.0; // for how long nothing has touched it and nothing has moved
+    bool resting = true;  // nothing touches it and nothing moves: steps cost nothing
 };
 
 /// What a tip of one radius meets on a material. Tools with equal tips share the table.

@@ -13,7 +13,8 @@ namespace {
 constexpr double kOpenGap_m = 1e-4; // rounding, with a wide margin
 // Relative residual of A^-1 H^T: of the answer to what a force changes by in a step. What forces
 // are where nothing changes does not depend on it.
-constexpr double kRows = 3e-2;
+constexpr double kRows = 1e-1;
+constexpr int kRowsAge = 10; // steps that they serve where the tools stay on their points
 
 // A free tool takes whatever skin is nearest to `from_m`; the body that it was over wins a tie.
 void find_nearest(TissueRig& rig, int tool, const glm::dvec3& from_m, double reach_m) noexcept {
@@ -102,15 +103,21 @@ Known what_is_known(const TissueRig& rig, const RowsOf& rows, const SoftBody& so
         if (at.triangle != was.triangle || at.weight != was.weight)
             return Known::nothing;
     }
-    return soft.answers_of == soft.linearisations ? Known::all : Known::about;
+    if (soft.answers_of == soft.linearisations)
+        return Known::all;
+    // only quadratic steps correct afterwards what old answers to a change of force leave
+    const bool serve = tissue::tier_of(soft.solid) == tissue::Tier::quadratic;
+    return serve && soft.answers_age < kRowsAge ? Known::all : Known::about;
 }
 
 // A^-1 H^T of the tools on a body.
 void answer_rows(const TissueRig& rig, const RowsOf& rows, Body& body) noexcept {
     SoftBody& soft = *body.soft;
     const Known known = what_is_known(rig, rows, soft);
+    ++soft.answers_age;
     if (known == Known::all)
         return;
+    soft.answers_age = 0;
     const std::size_t n = soft.motion_m.size();
     const std::span<double> block(soft.rows.data(), 3 * n * rows.count);
     std::fill(block.begin(), block.end(), 0.0);

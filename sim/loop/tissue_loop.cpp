@@ -11,17 +11,41 @@
 namespace sim {
 namespace {
 
-// Below these a body is at rest: a micrometre a second moves nothing that a hand or eye can tell,
-// and dropping it makes rest exact, so that resting steps cost nothing and repeat to the bit. An
-// organ that sways on its bed is as slow at each turning point: it must stay slow for longer.
-constexpr double kRestSpeed_mps = 1e-6;
+// A body that stays within so little for so long is at rest: nothing that a hand or eye can tell,
+// and dropping it makes rest exact, so that resting steps cost nothing and repeat to the bit. The
+// time is longer than half a sway of an organ on its bed (4 to 10 Hz). What creeps on, as tissue
+// with a memory does for as long as its longest relaxation, goes that much farther once dropped.
+constexpr double kStill_m = 5e-6;
 constexpr double kRestTime_s = 0.3;
+
+double still_m(const tissue::Material& material) noexcept {
+    double longest_s = kRestTime_s;
+    for (const tissue::PronyTerm& term : material.prony)
+        longest_s = std::max(longest_s, term.time_s);
+    return kStill_m * kRestTime_s / longest_s;
+}
 
 double largest(const std::vector<double>& values) noexcept {
     double most = 0.0;
     for (const double v : values)
         most = std::max(most, std::abs(v));
     return most;
+}
+
+// Whether it has stayed within that for that long, if nothing touches it.
+bool has_come_to_rest(Body& body, bool touched, double step_s) noexcept {
+    SoftBody& soft = *body.soft;
+    double farthest_m = 0.0;
+    for (std::size_t k = 0; k < soft.drift_m.size(); ++k) {
+        soft.drift_m[k] += soft.motion_m[k];
+        farthest_m = std::max(farthest_m, std::abs(soft.drift_m[k]));
+    }
+    soft.still_s += step_s;
+    if (touched || !(farthest_m <= still_m(body.material))) {
+        std::fill(soft.drift_m.begin(), soft.drift_m.end(), 0.0);
+        soft.still_s = 0.0;
+    }
+    return soft.still_s > kRestTime_s;
 }
 
 void note(const tissue::SolidReport& report, StepOutcome& outcome) noexcept {
@@ -88,10 +112,7 @@ void advance_bodies(TissueRig& rig, const haptics::ContactSolution& solution,
             touched |= rig.contact[i].body == static_cast<int>(b) &&
                        solution.force_n[i] != glm::dvec3{0.0};
         }
-        const double moved_m = largest(soft.motion_m);
-        const bool slow = !touched && !(moved_m > kRestSpeed_mps * rig.config.step_s);
-        soft.slow_s = slow ? soft.slow_s + rig.config.step_s : 0.0;
-        if (soft.slow_s > kRestTime_s) {
+        if (has_come_to_rest(body, touched, rig.config.step_s)) {
             tissue::stop(soft.solid);
             soft.resting = true;
             continue;
@@ -99,7 +120,9 @@ void advance_bodies(TissueRig& rig, const haptics::ContactSolution& solution,
         const tissue::SolidReport report =
             tissue::end_step(soft.solid, soft.load_n, rig.config.relinearise_m, soft.motion_m);
         note(report, outcome);
+        const double moved_m = largest(soft.motion_m);
         soft.linearisations += report.new_tangent;
+        soft.basis_drift_m += moved_m;
         tissue::place_surface(body.organ->surface, soft.skin_frame, tissue::position_m(soft.solid),
                               body.skin_m, body.skin_normal);
     }

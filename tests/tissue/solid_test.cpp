@@ -107,6 +107,37 @@ double off(std::span<const double> a, std::span<const double> truth) {
 
 } // namespace
 
+TEST_CASE("solid: how roughly a change of load is answered does not show once the load stays") {
+    const tissue::TetMesh mesh = block_mesh({5, 5, 3});
+    const std::vector<tissue::BedSample> bed = bed_below(mesh);
+    const std::vector<std::uint8_t> loose(mesh.rest_m.size(), 0);
+    for (const Tier tier : {Tier::corotated, Tier::quadratic}) {
+        CAPTURE(tissue::name_of(tier));
+        const auto settled = [&](double wrong) {
+            tissue::Solid solid =
+                tissue::make_solid(tier, {mesh, loose, bed}, kTissue, dvec3{0.0}, kStep_s);
+            const std::vector<double> load =
+                press(tissue::rest_m(solid), tissue::dofs(solid), {0.05, 0.0, -0.2});
+            const auto n = static_cast<std::size_t>(tissue::unknowns(solid));
+            std::vector<double> du(n), answer(n), before(n);
+            for (int step = 0; step < 400; ++step) {
+                tissue::free_motion(solid, true, before, du);
+                std::fill(answer.begin(), answer.end(), 0.0);
+                for (std::size_t i = 0; i < load.size(); ++i)
+                    answer[i] = load[i] - before[i];
+                tissue::solve(solid, 1e-3, {}, answer, 1);
+                for (std::size_t i = 0; i < n; ++i)
+                    du[i] += wrong * answer[i];
+                std::copy(load.begin(), load.end(), before.begin());
+                tissue::end_step(solid, load, 20e-6, du);
+            }
+            return moved(solid);
+        };
+        const std::vector<double> truth = settled(1.0);
+        CHECK(off(settled(0.7), truth) < 1e-3);
+    }
+}
+
 TEST_CASE("solid: under a small press on a bed, linear statics of the same shapes is found") {
     const tissue::TetMesh mesh = block_mesh({5, 5, 3});
     const std::vector<tissue::BedSample> bed = bed_below(mesh);

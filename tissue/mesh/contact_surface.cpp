@@ -3,6 +3,8 @@
 // (load and bake time).
 #include "tissue/mesh/contact_surface.h"
 
+#include "tissue/mesh/skin_rows.h"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -126,21 +128,17 @@ std::vector<SkinFrame> make_skin_frames(const ContactSurface& surface,
 void place_surface(const ContactSurface& surface, std::span<const SkinFrame> frames,
                    std::span<const dvec3> node_m, std::span<dvec3> position_m,
                    std::span<dvec3> normal) noexcept {
+    std::fill(normal.begin(), normal.end(), dvec3{0.0});
     // rigid scenery has no rows: it stays where it is
-    const bool rigid = surface.row_start.empty();
-    for (std::size_t v = 0; v < surface.rest_m.size(); ++v) {
-        normal[v] = dvec3{0.0};
-        if (rigid) {
-            position_m[v] = surface.rest_m[v];
-            continue;
+    if (surface.row_start.empty()) {
+        std::copy(surface.rest_m.begin(), surface.rest_m.end(), position_m.begin());
+    } else {
+        carry_rows(surface, node_m, position_m);
+        for (std::size_t v = 0; v < surface.rest_m.size(); ++v) {
+            const auto [i, j, k] = surface.frame_node[v];
+            position_m[v] +=
+                turned_offset(frames[v], surface.offset_m[v], node_m[i], node_m[j], node_m[k]);
         }
-        dvec3 carried{0.0};
-        for (std::uint32_t k = surface.row_start[v]; k < surface.row_start[v + 1]; ++k) {
-            carried += surface.row_weight[k] * node_m[surface.row_node[k]];
-        }
-        const auto [i, j, k] = surface.frame_node[v];
-        position_m[v] = carried + turned_offset(frames[v], surface.offset_m[v], node_m[i],
-                                                node_m[j], node_m[k]);
     }
 
     // area-weighted normals of the surface as placed

@@ -111,8 +111,7 @@ void add_bed_tangent(const CorotatedModel& model, double* values) noexcept {
     }
 }
 
-void assemble_bed(const CorotatedModel& model, const CorotatedState& state,
-                  CorotatedSystem& system) noexcept {
+void add_bed_forces(const CorotatedModel& model, const CorotatedState& state, double* f) noexcept {
     for (const HeldTet& held : model.held) {
         for (int a = 0; a < 4; ++a) {
             const std::int32_t dof = model.dof[model.mesh.tets[held.tet][a]];
@@ -120,10 +119,25 @@ void assemble_bed(const CorotatedModel& model, const CorotatedState& state,
                 continue;
             const dvec3 force = bed_force_n(model, held, state, a);
             for (int k = 0; k < 3; ++k)
-                system.internal_n[dof + k] += force[k];
+                f[dof + k] += force[k];
         }
     }
-    add_bed_tangent(model, system.stiffness.data());
+}
+
+void set_weight(const CorotatedModel& model, double* f) noexcept {
+    for (std::size_t i = 0; i < model.dof.size(); ++i) {
+        if (model.dof[i] < 0)
+            continue;
+        for (int k = 0; k < 3; ++k)
+            f[model.dof[i] + k] = -model.mass_kg[i] * model.gravity_mps2[k];
+    }
+}
+
+// Not a number: not kept.
+void keep_peak(const CorotatedModel& model, std::size_t tet, const dmat3& stress_nm,
+               double& peak2) noexcept {
+    const double volume2 = model.volume_m3[tet] * model.volume_m3[tet];
+    peak2 = std::max(peak2, von_mises_squared(stress_nm) / volume2);
 }
 
 std::array<dvec3, 4> turned_gradients(const CorotatedModel& model, std::size_t tet,
@@ -180,12 +194,7 @@ void assemble(const CorotatedModel& model, const CorotatedState& state, bool exa
               CorotatedSystem& system, const Tangles* tangles) noexcept {
     std::fill(system.stiffness.begin(), system.stiffness.end(), 0.0);
     double* f = system.internal_n.data();
-    for (std::size_t i = 0; i < model.dof.size(); ++i) {
-        if (model.dof[i] < 0)
-            continue;
-        for (int k = 0; k < 3; ++k)
-            f[model.dof[i] + k] = -model.mass_kg[i] * model.gravity_mps2[k];
-    }
+    set_weight(model, f);
     system.inverted = 0;
     double peak2 = 0.0;
     for (std::size_t e = 0; e < model.mesh.tets.size(); ++e) {
@@ -199,13 +208,30 @@ void assemble(const CorotatedModel& model, const CorotatedState& state, bool exa
         system.inverted += shape.det <= 0.0;
         const std::array<dvec3, 4> g = turned_gradients(model, e, shape.rotation);
         const dmat3 stress_nm = element_stress_nm(model, e, shape);
-        const double volume2 = model.volume_m3[e] * model.volume_m3[e];
-        peak2 = std::max(peak2, von_mises_squared(stress_nm) / volume2); // not a number: not kept
+        keep_peak(model, e, stress_nm, peak2);
         add_force(model, e, stress_nm, g, f);
         add_tangent(model, e, element_tangent(model, e, shape, exact), g, system.stiffness.data());
     }
     system.peak_von_mises_pa = std::sqrt(peak2);
-    assemble_bed(model, state, system);
+    add_bed_forces(model, state, f);
+    add_bed_tangent(model, system.stiffness.data());
+}
+
+ForceSums assemble_forces(const CorotatedModel& model, const CorotatedState& state,
+                          std::span<double> force_n) noexcept {
+    set_weight(model, force_n.data());
+    ForceSums sums;
+    double peak2 = 0.0;
+    for (std::size_t e = 0; e < model.mesh.tets.size(); ++e) {
+        const ElementShape shape = element_shape(model, e, state.position_m);
+        sums.inverted += shape.det <= 0.0;
+        const dmat3 stress_nm = element_stress_nm(model, e, shape);
+        keep_peak(model, e, stress_nm, peak2);
+        add_force(model, e, stress_nm, turned_gradients(model, e, shape.rotation), force_n.data());
+    }
+    add_bed_forces(model, state, force_n.data());
+    sums.peak_von_mises_pa = std::sqrt(peak2);
+    return sums;
 }
 
 void assemble_damping(const CorotatedModel& model, const CorotatedState& state,

@@ -17,6 +17,14 @@ glm::dvec3 bed_force_n(const CorotatedModel& model, const HeldTet& held,
 void assemble(const CorotatedModel& model, const CorotatedState& state, bool exact,
               CorotatedSystem& system, const Tangles* tangles = nullptr) noexcept;
 
+/// Forces alone: f_int - f_ext into `force_n`, on the unknowns.
+struct ForceSums {
+    int inverted = 0;
+    double peak_von_mises_pa = 0.0;
+};
+ForceSums assemble_forces(const CorotatedModel& model, const CorotatedState& state,
+                          std::span<double> force_n) noexcept;
+
 /// beta K on the pattern, K the warped stiffness of bed and tets outside the tangles: positive
 /// semidefinite. What K is inside one says nothing of how tissue damps.
 void assemble_damping(const CorotatedModel& model, const CorotatedState& state,

@@ -183,11 +183,15 @@ QuadraticReport newton(const QuadraticModel& model, const QuadraticOptions& opti
     while (report.newton_iterations < options.max_newton &&
            (report.newton_iterations < least || s.residual > options.newton_tolerance)) {
         std::copy(s.residual_n.begin(), s.residual_n.end(), s.b.begin());
-        const LinearReport linear = solve_nodes(model, options, s);
+        QuadraticOptions inexact = options;
+        inexact.linear_tolerance = newton_linear_tolerance(options, s);
+        const LinearReport linear = solve_nodes(model, inexact, s);
         report.linear_iterations += linear.iterations;
         report.projected += linear.projected;
         ++report.newton_iterations;
         report.linear_residual = std::max(report.linear_residual, linear.relative_residual);
+        report.linear_force_residual =
+            std::max(report.linear_force_residual, linear.relative_residual * s.residual);
         if (!go_down(model, s))
             break;
     }
@@ -243,6 +247,15 @@ void linearize(const QuadraticModel& model, const QuadraticState& state, Quadrat
     warp_nodes(model, s);
 }
 
+double newton_linear_tolerance(const QuadraticOptions& options, const QuadraticSystem& s) noexcept {
+    constexpr double kShare = 0.3;
+    const double loosest = std::max(options.linear_tolerance, options.loosest_linear);
+    if (!(s.residual > 0.0))
+        return loosest;
+    return std::clamp(kShare * options.newton_tolerance / s.residual, options.linear_tolerance,
+                      loosest);
+}
+
 QuadraticReport finish(const QuadraticModel& model, const QuadraticOptions& options,
                        std::span<const double> load_n, QuadraticSystem& s,
                        std::span<double> du) noexcept {
@@ -263,7 +276,6 @@ QuadraticReport finish(const QuadraticModel& model, const QuadraticOptions& opti
         evaluate(model, s);
     }
     report = newton(model, options, 0, s);
-    warp_nodes(model, s);
     read_motion(model, s, du);
     return report;
 }

@@ -127,6 +127,9 @@ struct QuadraticState {
 
 struct QuadraticOptions {
     double linear_tolerance = 1e-3; // |A y - r| / |r| of each linear solve
+    // Of Newton's solves it may be as much, where that leaves a third of newton_tolerance: more is
+    // lost on the next residual (Dembo, Eisenstat & Steihaug 1982).
+    double loosest_linear = 1e-3;
     int max_linear = 200;
     double newton_tolerance = 1e-3; // of the relative residual below, before another iteration
     int max_newton = 4;
@@ -176,7 +179,8 @@ struct LinearReport {
 struct QuadraticReport {
     int newton_iterations = 0;
     int linear_iterations = 0;
-    double linear_residual = 0.0; // the worst of the step
+    double linear_residual = 0.0;       // the worst of the step, of its right-hand side
+    double linear_force_residual = 0.0; // the same, of all forces as below
     // |residual on the unknowns| / (|f + M v/dt| + |f_int| + |inertia, damping|) on all nodes
     double relative_residual = 0.0;
     double min_det_f = 0.0;
@@ -202,6 +206,10 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s);
 /// may be empty. No allocation, here and below.
 void linearize(const QuadraticModel& model, const QuadraticState& state, QuadraticSystem& system,
                std::span<const double> load_n = {}) noexcept;
+
+/// Tolerance of a Newton step's linear solve from the residual of the system.
+double newton_linear_tolerance(const QuadraticOptions& options,
+                               const QuadraticSystem& system) noexcept;
 
 /// A x = b for one right-hand side on the unknowns, at the last linearisation. Starts from the
 /// modes of remember_modes(), if any (quadratic_columns.h).

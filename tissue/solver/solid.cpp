@@ -22,7 +22,9 @@ CorotatedSolid make_linear_tets(bool linear, const SolidMesh& mesh, const Materi
     CorotatedSystem system = make_system(model);
     linearize(model, state, dt_s, system);
     Descent descent = make_descent(model);
-    return {std::move(model), std::move(state), std::move(system), std::move(descent), linear};
+    Chord chord = make_chord(model);
+    return {std::move(model),   std::move(state), std::move(system),
+            std::move(descent), std::move(chord), linear};
 }
 
 QuadraticSolid make_quadratic_tets(const SolidMesh& mesh, const Material& material,
@@ -42,7 +44,9 @@ QuadraticSolid make_quadratic_tets(const SolidMesh& mesh, const Material& materi
     QuadraticState state = rest_state(model);
     QuadraticSystem system = make_system(model, dt_s);
     linearize(model, state, system);
-    return {std::move(model), std::move(state), std::move(system), {}};
+    QuadraticOptions options;
+    options.loosest_linear = 0.1;
+    return {std::move(model), std::move(state), std::move(system), options};
 }
 
 double largest(std::span<const double> values) noexcept {
@@ -61,7 +65,7 @@ SolidReport motion(CorotatedSolid& s, bool, std::span<const double> load_n,
 }
 
 SolidReport of(const QuadraticReport& report, int needed) noexcept {
-    return {.linear_residual = report.linear_residual,
+    return {.linear_residual = report.linear_force_residual,
             .residual = report.relative_residual,
             .iterations = std::max(0, report.newton_iterations - needed),
             .inverted = report.recovering ? 1 : 0,
@@ -78,12 +82,8 @@ SolidReport motion(QuadraticSolid& s, bool touched, std::span<const double> load
     const std::size_t n = du.size();
     const std::span<double> way(s.system.unknown.data(), n), right(way.data() + n, n);
     way_and_residual(s.model, s.system, way, right);
-    // as far as Newton's iteration would go, but at least a tenth of what is left
     QuadraticOptions options = s.options;
-    constexpr double kLeast = 0.1, kShare = 0.3;
-    options.linear_tolerance =
-        std::clamp(kShare * options.newton_tolerance / s.system.residual, options.linear_tolerance,
-                   std::max(kLeast, options.linear_tolerance));
+    options.linear_tolerance = newton_linear_tolerance(options, s.system);
     const LinearReport linear = solve(s.model, options, right, s.system, du);
     s.most_iterations = std::max(s.most_iterations, linear.iterations);
     for (std::size_t k = 0; k < n; ++k)
@@ -116,6 +116,13 @@ SolidReport end(CorotatedSolid& s, std::span<const double> load_n, double reline
         follow_tangent(s.model, du, s.system);
         return {};
     }
+    ChordEnd corrected;
+    if (relinearise_m > 0.0)
+        corrected = end_on_chord(s.model, load_n, du, s.system, s.chord, s.state);
+    if (corrected.made) {
+        s.drift_m = 0.0;
+        return {.residual = corrected.residual};
+    }
     const StepEnd end = finish_step(s.model, load_n, du, s.system, s.descent, s.state);
     s.drift_m = 0.0;
     return {.residual = end.relative_residual,
@@ -127,7 +134,7 @@ SolidReport end(CorotatedSolid& s, std::span<const double> load_n, double reline
 // A factor of where the body is, once solves take long with the one of before. Counted in
 // iterations, never in time, so that runs repeat.
 void renew_factor(QuadraticSolid& s) {
-    constexpr int kManyIterations = 8, kLeastSteps = 10;
+    constexpr int kManyIterations = 4, kLeastSteps = 5;
     ++s.since_factor;
     if (s.most_iterations > kManyIterations && s.since_factor >= kLeastSteps) {
         refactor(s.model, s.system);

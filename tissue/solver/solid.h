@@ -12,6 +12,7 @@
 //   quadratic  ten-node neo-Hooke, tissue/solver/quadratic.h. Does not lock.
 #pragma once
 
+#include "tissue/solver/chord.h"
 #include "tissue/solver/descent.h"
 #include "tissue/solver/quadratic.h"
 
@@ -36,6 +37,7 @@ struct CorotatedSolid {
     CorotatedState state;
     CorotatedSystem system; // linearised at `state`, or near it
     Descent descent;        // for steps that one Newton iteration does not do
+    Chord chord;            // for steps that the tangent of before does
     bool linear = false;    // the tangent of the rest shape for ever
     double drift_m = 0.0;   // how far anything moved since the system was linearised
 };
@@ -77,7 +79,7 @@ std::span<const glm::dvec3> position_m(const Solid& solid) noexcept;
 
 /// What a step had to do, of one body.
 struct SolidReport {
-    // |A x - b| / |b|, the worst; where Newton goes on, of all forces as `residual`
+    // |A x - b|, the worst: of |b|; of Newton's steps, of all forces as `residual`
     double linear_residual = 0.0;
     // quadratic: nonlinear, as QuadraticReport; corotated: of a descent, as StepEnd
     double residual = 0.0;
