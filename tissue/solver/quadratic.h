@@ -108,8 +108,9 @@ struct QuadraticModel {
     std::vector<double> mass_kg;
     // what the bed adds between them, the same for x, y and z; empty without a bed
     std::vector<double> bed_npm;
-    std::vector<std::array<std::array<std::int32_t, 3>, 55>> block_place; // see refactor()
-    NodeVector<double> weight_n;                                          // M g
+    std::vector<std::array<std::array<std::int32_t, 3>, 55>>
+        block_place;             // see quadratic_refactor.h
+    NodeVector<double> weight_n; // M g
     // at rest, on the pattern of the unknowns
     SparsePattern pattern;
     std::vector<double> rest_stiffness_npm, rest_mass_kg;
@@ -159,10 +160,9 @@ struct QuadraticSystem {
     std::vector<float> ordered{};
     std::vector<double> unknown{}; // two vectors of unknowns
     std::vector<SingleFactor::Line> lines{};
-    SparseFactor exact;                           // of A at rest
-    SparseFactor moved;                           // of A where refactor() was last called
-    std::vector<double> fixed_matrix{}, matrix{}; // of A, what mass and bed add; A
-    std::vector<glm::mat3> unwarp{}; // inverse of the warp there: `warp` leads on from it
+    SparseFactor exact;                 // of A at rest
+    std::vector<double> fixed_matrix{}; // of A, what mass and bed add
+    std::vector<glm::mat3> unwarp{};    // inverse of the warp there: `warp` leads on from it
     SingleFactor single{};
     BlockScratch block{};
     std::vector<double> rest_stiffness_npm{}; // K at rest, in a step of dt

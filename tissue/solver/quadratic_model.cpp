@@ -196,7 +196,7 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s) {
         throw std::invalid_argument("dt_s = " + std::to_string(dt_s) +
                                     ": must be finite and greater than 0");
     QuadraticSystem s{
-        .dt_s = dt_s, .exact = SparseFactor(model.pattern), .moved = SparseFactor(model.pattern)};
+        .dt_s = dt_s, .exact = SparseFactor(model.pattern)};
     const double mass = 1.0 / (dt_s * dt_s) + model.material.damping_mass_1ps / dt_s;
     const double stiffness = 1.0 + model.material.damping_stiffness_s / dt_s;
     s.prony = prony_step(model.material, dt_s);

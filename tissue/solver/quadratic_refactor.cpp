@@ -4,6 +4,7 @@
 #include "tissue/reference/tet10.h"
 
 #include <algorithm>
+#include <system_error>
 
 namespace tissue {
 namespace {
@@ -120,6 +121,20 @@ void add_tet(const QuadraticModel& model, const QuadraticTangents& tangents, std
     }
 }
 
+bool make_factor(const QuadraticModel& model, std::span<const double> fixed_matrix,
+                 double stiffness, Refactoring& job) {
+    for (const double geometric : {1.0, 0.5, 0.0}) {
+        job.matrix.assign(fixed_matrix.begin(), fixed_matrix.end());
+        for (std::size_t e = 0; e < model.mesh.tets.size(); ++e)
+            add_tet(model, job.tangent, e, stiffness, geometric, job.matrix);
+        if (!job.factor.factor(job.matrix))
+            continue;
+        job.single = make_single_factor(job.factor.supernodes());
+        return true;
+    }
+    return false;
+}
+
 } // namespace
 
 std::vector<std::array<std::array<std::int32_t, 3>, 55>> block_places(const QuadraticModel& model) {
@@ -147,26 +162,44 @@ std::vector<std::array<std::array<std::int32_t, 3>, 55>> block_places(const Quad
     return places;
 }
 
-bool refactor(const QuadraticModel& model, QuadraticSystem& s) {
-    if (s.recovering)
+Refactoring make_refactoring(const QuadraticModel& model) {
+    return {.factor = SparseFactor(model.pattern),
+            .matrix = {},
+            .tangent = {},
+            .warp = {},
+            .single = {},
+            .made = {}};
+}
+
+bool begin_refactoring(const QuadraticModel& model, const QuadraticSystem& s,
+                       Refactoring& job) noexcept {
+    if (s.recovering || job.made.valid())
         return false;
+    job.tangent = s.tangent;
+    job.warp.resize(s.warp.size());
+    for (std::size_t i = 0; i < s.warp.size(); ++i)
+        job.warp[i] = s.warp[i] * glm::inverse(s.unwarp[i]); // warp = W unwarp
     const double stiffness = 1.0 + model.material.damping_stiffness_s / s.dt_s;
-    for (const double geometric : {1.0, 0.5, 0.0}) {
-        s.matrix = s.fixed_matrix;
-        for (std::size_t e = 0; e < model.mesh.tets.size(); ++e)
-            add_tet(model, s.tangent, e, stiffness, geometric, s.matrix);
-        if (!s.moved.factor(s.matrix))
-            continue;
-        s.single = make_single_factor(s.moved.supernodes());
-        for (std::size_t i = 0; i < s.warp.size(); ++i) {
-            // warp = W unwarp, W of now
-            const glm::mat3 W = s.warp[i] * glm::inverse(s.unwarp[i]);
-            s.unwarp[i] = glm::inverse(W);
-            s.warp[i] = glm::mat3(1.0f);
-        }
-        return true;
+    try {
+        job.made = std::async(std::launch::async, [&model, &s, &job, stiffness] {
+            return make_factor(model, s.fixed_matrix, stiffness, job);
+        });
+    } catch (const std::system_error&) {
+        return false;
     }
-    return false;
+    return true;
+}
+
+bool take_refactoring(Refactoring& job, QuadraticSystem& s) noexcept {
+    if (!job.made.valid() || !job.made.get())
+        return false;
+    std::swap(s.single, job.single);
+    for (std::size_t i = 0; i < s.warp.size(); ++i) {
+        const glm::mat3 W = s.warp[i] * glm::inverse(s.unwarp[i]);
+        s.unwarp[i] = glm::inverse(job.warp[i]);
+        s.warp[i] = W * s.unwarp[i];
+    }
+    return true;
 }
 
 } // namespace tissue

@@ -3,34 +3,30 @@
 #include "tissue/solver/single_factor.h"
 
 #include <algorithm>
+#include <cblas.h>
 
 namespace tissue {
 namespace {
 
-// In place, `rows` x `columns`, column-major: [L11; L21] becomes [I; L21] L11^-1. Column by column
-// from the last: X L11 = [I; L21] gives X_j = ([I; L21]_j - sum_k>j X_k L11_kj) / L11_jj.
-void divide_by_diagonal(double* block, int rows, int columns) {
-    std::vector<double> own(static_cast<std::size_t>(columns) * columns);
-    for (int j = 0; j < columns; ++j) {
-        std::copy_n(block + j * rows, columns, own.begin() + j * columns);
-        std::fill_n(block + j * rows, columns, 0.0);
-        block[j * rows + j] = 1.0;
+// In place, `rows` x `columns`, column-major: [L11; L21] becomes X = [I; L21] L11^-1, X L11 = [I;
+// L21].
+void divide_by_diagonal(double* block, int rows, int columns, std::vector<double>& own) {
+    own.resize(static_cast<std::size_t>(columns) * columns);
+    for (std::ptrdiff_t j = 0; j < columns; ++j) {
+        double* column = block + j * rows;
+        std::copy_n(column, columns, own.begin() + j * columns);
+        std::fill_n(column, columns, 0.0);
+        column[j] = 1.0;
     }
-    for (int j = columns - 1; j >= 0; --j) {
-        for (int k = j + 1; k < columns; ++k) {
-            const double factor = own[j * columns + k];
-            for (int r = 0; r < rows; ++r)
-                block[j * rows + r] -= factor * block[k * rows + r];
-        }
-        for (int r = 0; r < rows; ++r)
-            block[j * rows + r] /= own[j * columns + j];
-    }
+    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, rows, columns,
+                1.0, own.data(), columns, block, rows);
 }
 
 } // namespace
 
 SingleFactor make_single_factor(const Supernodes& nodes) {
     constexpr int kLanes = SingleFactor::kLanes, kColumns = SingleFactor::kColumns;
+    std::vector<double> block, own;
     SingleFactor f;
     f.size = static_cast<int>(nodes.order.size());
     f.order = nodes.order;
@@ -43,20 +39,21 @@ SingleFactor make_single_factor(const Supernodes& nodes) {
         const auto names = nodes.row.begin() + nodes.row_start[s];
         f.row.insert(f.row.end(), names + columns, names + rows);
 
-        std::vector<double> block(nodes.value.begin() + nodes.value_start[s],
-                                  nodes.value.begin() + nodes.value_start[s] +
-                                      static_cast<std::ptrdiff_t>(rows) * columns);
-        divide_by_diagonal(block.data(), rows, columns);
+        block.assign(nodes.value.begin() + nodes.value_start[s],
+                     nodes.value.begin() + nodes.value_start[s] +
+                         static_cast<std::ptrdiff_t>(rows) * columns);
+        divide_by_diagonal(block.data(), rows, columns, own);
         for (int j = 0; j < columns; j += kColumns) {
             for (int line = j / kLanes; line < f.block.back().lines; ++line) {
+                const int first = line * kLanes, count = std::min(kLanes, rows - first);
                 for (int c = j; c < j + kColumns; ++c) {
-                    SingleFactor::Line to;
-                    for (int k = 0; k < kLanes; ++k) {
-                        const int r = line * kLanes + k;
-                        if (c < columns && r < rows)
-                            to.lane[k] = static_cast<float>(block[c * rows + r]);
-                    }
-                    f.value.push_back(to);
+                    SingleFactor::Line& to = f.value.emplace_back();
+                    if (c >= columns)
+                        continue;
+                    const double* from =
+                        block.data() + static_cast<std::ptrdiff_t>(c) * rows + first;
+                    for (int k = 0; k < count; ++k)
+                        to.lane[k] = static_cast<float>(from[k]);
                 }
             }
         }

@@ -3,7 +3,6 @@
 
 #include "tissue/mesh/quadratic_mesh.h"
 #include "tissue/solver/quadratic_columns.h"
-#include "tissue/solver/quadratic_refactor.h"
 #include "tissue/solver/stress.h"
 
 #include <algorithm>
@@ -46,7 +45,12 @@ QuadraticSolid make_quadratic_tets(const SolidMesh& mesh, const Material& materi
     linearize(model, state, system);
     QuadraticOptions options;
     options.loosest_linear = 0.1;
-    return {std::move(model), std::move(state), std::move(system), options};
+    auto refactoring = std::make_unique<Refactoring>(make_refactoring(model));
+    return {.model = std::move(model),
+            .state = std::move(state),
+            .system = std::move(system),
+            .options = options,
+            .refactoring = std::move(refactoring)};
 }
 
 double largest(std::span<const double> values) noexcept {
@@ -131,15 +135,16 @@ SolidReport end(CorotatedSolid& s, std::span<const double> load_n, double reline
             .new_tangent = true};
 }
 
-// A factor of where the body is, once solves take long with the one of before. Counted in
-// iterations, never in time, so that runs repeat.
-void renew_factor(QuadraticSolid& s) {
-    constexpr int kManyIterations = 4, kLeastSteps = 5;
+// A factor of where the body is, once solves take long with the one of before: begun when they do,
+// taken so many steps later. Both are counted, never timed, so that runs repeat.
+void renew_factor(QuadraticSolid& s) noexcept {
+    constexpr int kManyIterations = 4, kTakeAfter = 10;
     ++s.since_factor;
-    if (s.most_iterations > kManyIterations && s.since_factor >= kLeastSteps) {
-        refactor(s.model, s.system);
+    if (s.since_factor == kTakeAfter)
+        take_refactoring(*s.refactoring, s.system);
+    else if (s.since_factor > kTakeAfter && s.most_iterations > kManyIterations &&
+             begin_refactoring(s.model, s.system, *s.refactoring))
         s.since_factor = 0;
-    }
     s.most_iterations = 0;
 }
 
@@ -152,7 +157,9 @@ SolidReport end(QuadraticSolid& s, std::span<const double> load_n, double reline
     advance(s.model, s.system, du, s.state);
     renew_factor(s);
     s.drift_m += largest(du);
-    report.new_tangent = s.drift_m > relinearise_m;
+    // forces are exact in every step: only what rests on the tangent waits for a new one
+    constexpr double kOld = 5.0;
+    report.new_tangent = s.drift_m > kOld * relinearise_m;
     if (report.new_tangent)
         s.drift_m = 0.0;
     return report;

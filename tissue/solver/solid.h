@@ -14,8 +14,9 @@
 
 #include "tissue/solver/chord.h"
 #include "tissue/solver/descent.h"
-#include "tissue/solver/quadratic.h"
+#include "tissue/solver/quadratic_refactor.h"
 
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <variant>
@@ -48,9 +49,10 @@ struct QuadraticSolid {
     QuadraticSystem system;
     QuadraticOptions options;
     int most_iterations = 0; // of the linear solves of this step
-    int since_factor = 0;    // steps since the preconditioner was factored
-    bool begun = false;      // linearised for the step that is being made
-    double drift_m = 0.0;    // how far anything moved since its tangent was said to be new
+    int since_factor = 0;    // steps since the preconditioner began to be factored anew
+    std::unique_ptr<Refactoring> refactoring;
+    bool begun = false;   // linearised for the step that is being made
+    double drift_m = 0.0; // how far anything moved since its tangent was said to be new
 };
 
 using Solid = std::variant<CorotatedSolid, QuadraticSolid>;

@@ -34,8 +34,10 @@ double peak_von_mises_pa(const QuadraticModel& model, const QuadraticSystem& sys
                 const double J = glm::determinant(F);
                 if (!(J > 0.0))
                     continue;
-                const double scale = std::pow(J, -5.0 / 3.0);
-                peak2 = std::max(peak2, scale * scale * von_mises_squared(T * glm::transpose(F)));
+                // times J^(-10/3); a root only for what may be the peak, as J^(-1/3) <= max(1, 1/J)
+                const double stress2 = von_mises_squared(T * glm::transpose(F)) / (J * J * J);
+                if (stress2 * std::max(1.0, 1.0 / J) > peak2)
+                    peak2 = std::max(peak2, stress2 / std::cbrt(J));
             }
         }
     }
