@@ -142,7 +142,7 @@ Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Ma
                            material, glm::dvec3{0.0}, dt_s);
     const int unknowns = tissue::unknowns(solid);
     const auto n = static_cast<std::size_t>(unknowns);
-    std::vector<tissue::SkinFrame> frame = tissue::make_skin_frames(skin, tissue::rest_m(solid));
+    tissue::SkinFrames frame = tissue::make_skin_frames(skin, tissue::rest_m(solid));
     const std::vector<double> rows(n * 3 * haptics::kTools), unknown(n);
     body.soft.emplace(SoftBody{.solid = std::move(solid),
                                .basis = tissue::make_contact_basis(unknowns),

@@ -20,7 +20,7 @@ namespace sim {
 struct SoftBody {
     tissue::Solid solid;
     tissue::ContactBasis basis;
-    std::vector<tissue::SkinFrame> skin_frame;
+    tissue::SkinFrames skin_frame;
     std::vector<double> shape_by_unknown; // the basis, one line of modes per unknown
     std::vector<double> motion_m;         // du of the step being made
     std::vector<double> rows;             // of the contact, 3 columns for each tool

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -41,22 +42,37 @@ bool triangle_frame(const dvec3& a, const dvec3& b, const dvec3& c, dmat3& frame
     return true;
 }
 
-// The offset of a skin vertex turned with its frame triangle: the triangle's normal turns into the
-// new normal, and within the plane it turns by the rotation part of the in-plane deformation
-// gradient F = [f00 f01; 0 f11], whose angle is atan2(-f01, f00 + f11).
-dvec3 turned_offset(const SkinFrame& rest, const dvec3& offset_m, const dvec3& a, const dvec3& b,
-                    const dvec3& c) noexcept {
-    dmat3 to;
+// How a frame triangle turned: its normal turns into the new normal, and within the plane it turns
+// by the rotation part of the in-plane deformation gradient F = [f00 f01; 0 f11], whose angle is
+// atan2(-f01, f00 + f11). False if it is degenerate, now or at rest.
+bool turned(const SkinFrame& rest, const dvec3& a, const dvec3& b, const dvec3& c,
+            dmat3& to) noexcept {
     if (rest.edge_1pm == 0.0 || !triangle_frame(a, b, c, to))
-        return offset_m;
+        return false;
     const double f00 = glm::dot(b - a, to[0]) * rest.edge_1pm;
     const double f11 = glm::dot(c - a, to[1]) * rest.height_1pm;
     const double f01 =
         glm::dot(c - a, to[0]) * rest.height_1pm - glm::dot(b - a, to[0]) * rest.skew;
     const double size = std::sqrt((f00 + f11) * (f00 + f11) + f01 * f01);
     const double cosine = (f00 + f11) / size, sine = -f01 / size;
-    const dvec3& o = rest.offset_m;
-    return (cosine * o.x - sine * o.y) * to[0] + (sine * o.x + cosine * o.y) * to[1] + o.z * to[2];
+    const dvec3 first = cosine * to[0] + sine * to[1];
+    to[1] = cosine * to[1] - sine * to[0];
+    to[0] = first;
+    return true;
+}
+
+void add_offsets(const ContactSurface& surface, const SkinFrames& frames,
+                 std::span<const dvec3> node_m, std::span<dvec3> position_m) noexcept {
+    std::uint32_t k = 0;
+    for (const SkinFrame& frame : frames.frame) {
+        dmat3 to;
+        const bool firm =
+            turned(frame, node_m[frame.node[0]], node_m[frame.node[1]], node_m[frame.node[2]], to);
+        for (; k < frame.stop; ++k) {
+            const std::uint32_t v = frames.vertex[k];
+            position_m[v] += firm ? to * frames.offset_m[k] : surface.offset_m[v];
+        }
+    }
 }
 
 } // namespace
@@ -106,26 +122,35 @@ std::vector<std::array<std::int32_t, 3>> triangle_neighbours(std::span<const Tri
     return neighbours;
 }
 
-std::vector<SkinFrame> make_skin_frames(const ContactSurface& surface,
-                                        std::span<const dvec3> rest_node_m) {
-    std::vector<SkinFrame> frames;
-    for (std::size_t v = 0; v < surface.frame_node.size(); ++v) {
-        const auto [i, j, k] = surface.frame_node[v];
-        const dvec3 &a = rest_node_m[i], &b = rest_node_m[j], &c = rest_node_m[k];
-        SkinFrame frame{.offset_m = surface.offset_m[v]};
-        dmat3 from;
-        if (triangle_frame(a, b, c, from)) {
-            frame.edge_1pm = 1.0 / glm::dot(b - a, from[0]);
-            frame.height_1pm = 1.0 / glm::dot(c - a, from[1]);
-            frame.skew = frame.edge_1pm * glm::dot(c - a, from[0]) * frame.height_1pm;
-            frame.offset_m = glm::transpose(from) * surface.offset_m[v];
+SkinFrames make_skin_frames(const ContactSurface& surface, std::span<const dvec3> rest_node_m) {
+    SkinFrames frames;
+    frames.vertex.resize(surface.frame_node.size());
+    std::iota(frames.vertex.begin(), frames.vertex.end(), 0u);
+    std::ranges::stable_sort(frames.vertex, {}, [&](auto v) { return surface.frame_node[v]; });
+    dmat3 from;
+    bool firm = false;
+    for (std::size_t k = 0; k < frames.vertex.size(); ++k) {
+        const std::uint32_t v = frames.vertex[k];
+        if (k == 0 || frames.frame.back().node != surface.frame_node[v]) {
+            const auto [i, j, l] = surface.frame_node[v];
+            const dvec3 &a = rest_node_m[i], &b = rest_node_m[j], &c = rest_node_m[l];
+            SkinFrame& frame = frames.frame.emplace_back();
+            frame.node = surface.frame_node[v];
+            firm = triangle_frame(a, b, c, from);
+            if (firm) {
+                frame.edge_1pm = 1.0 / glm::dot(b - a, from[0]);
+                frame.height_1pm = 1.0 / glm::dot(c - a, from[1]);
+                frame.skew = frame.edge_1pm * glm::dot(c - a, from[0]) * frame.height_1pm;
+            }
         }
-        frames.push_back(frame);
+        frames.frame.back().stop = static_cast<std::uint32_t>(k + 1);
+        frames.offset_m.push_back(firm ? glm::transpose(from) * surface.offset_m[v]
+                                       : surface.offset_m[v]);
     }
     return frames;
 }
 
-void place_surface(const ContactSurface& surface, std::span<const SkinFrame> frames,
+void place_surface(const ContactSurface& surface, const SkinFrames& frames,
                    std::span<const dvec3> node_m, std::span<dvec3> position_m,
                    std::span<dvec3> normal) noexcept {
     std::fill(normal.begin(), normal.end(), dvec3{0.0});
@@ -134,11 +159,7 @@ void place_surface(const ContactSurface& surface, std::span<const SkinFrame> fra
         std::copy(surface.rest_m.begin(), surface.rest_m.end(), position_m.begin());
     } else {
         carry_rows(surface, node_m, position_m);
-        for (std::size_t v = 0; v < surface.rest_m.size(); ++v) {
-            const auto [i, j, k] = surface.frame_node[v];
-            position_m[v] +=
-                turned_offset(frames[v], surface.offset_m[v], node_m[i], node_m[j], node_m[k]);
-        }
+        add_offsets(surface, frames, node_m, position_m);
     }
 
     // area-weighted normals of the surface as placed

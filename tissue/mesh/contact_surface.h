@@ -34,17 +34,23 @@ struct ContactSurface {
 /// Triangle adjacency; throws naming the edge if the surface is not manifold.
 std::vector<std::array<std::int32_t, 3>> triangle_neighbours(std::span<const Triangle> triangles);
 
-/// What of R_v never changes: the frame triangle at rest and the offset as it sees it.
+/// What of R_v never changes: the frame triangles at rest, and the offsets of the vertices that
+/// turn with them as they see them.
 struct SkinFrame {
+    std::array<std::uint32_t, 3> node{};
     double edge_1pm = 0.0, skew = 0.0, height_1pm = 0.0; // 1/p, q/p, 1/r of edges (p,0), (q,r)
-    glm::dvec3 offset_m{0.0}; // in the triangle's frame; edge_1pm 0: degenerate, world
+    std::uint32_t stop = 0; // its vertices: from the stop of the one before
 };
-/// One per vertex; none for rigid scenery. Made once at load.
-std::vector<SkinFrame> make_skin_frames(const ContactSurface& surface,
-                                        std::span<const glm::dvec3> rest_node_m);
+struct SkinFrames {
+    std::vector<SkinFrame> frame;
+    std::vector<std::uint32_t> vertex;
+    std::vector<glm::dvec3> offset_m; // of each of them; edge_1pm 0: degenerate, world
+};
+/// None for rigid scenery. Made once at load.
+SkinFrames make_skin_frames(const ContactSurface& surface, std::span<const glm::dvec3> rest_node_m);
 
 /// Positions and unit normals of every vertex for nodes at `node_m`. Sizes must fit.
-void place_surface(const ContactSurface& surface, std::span<const SkinFrame> frames,
+void place_surface(const ContactSurface& surface, const SkinFrames& frames,
                    std::span<const glm::dvec3> node_m, std::span<glm::dvec3> position_m,
                    std::span<glm::dvec3> normal) noexcept;
 
