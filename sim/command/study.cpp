@@ -79,6 +79,7 @@ void add_study(CLI::App& app, int& exit_code) {
     add_levels(*c);
     add_failures_study(*c, exit_code);
     add_scaling_study(*c, exit_code);
+    add_complexity_study(*c);
     add_solid_studies(*c, exit_code);
     add_solid_charts(*c);
     add_study_contact(*c);
