@@ -20,6 +20,11 @@ Tangents tangents_of(const glm::dvec3& n) noexcept {
     return {first, glm::cross(n, first)};
 }
 
+double arm_of_star_m(const Body& body, int triangle) noexcept {
+    const tissue::ContactSurface& skin = body.organ->surface;
+    return skin.footprint_radius_m[skin.triangles[triangle][0]] / 3.0;
+}
+
 // The star: where a contact that jaws do not hold may have slid to when the answer is used. Its arm
 // is a third of the kernel's radius, half the nodal size; up to three quarters of that size serve.
 tissue::BasisContact basis_contact(const Body& body, const FemContact& contact,
@@ -33,8 +38,7 @@ tissue::BasisContact basis_contact(const Body& body, const FemContact& contact,
                              .held = held};
     if (held)
         return out;
-    const tissue::Triangle& corner = body.organ->surface.triangles[contact.at.triangle];
-    const double arm_m = body.organ->surface.footprint_radius_m[corner[0]] / 3.0;
+    const double arm_m = arm_of_star_m(body, contact.at.triangle);
     const std::array<glm::dvec3, 4> arms{arm_m * t.first, -arm_m * t.first, arm_m * t.second,
                                          -arm_m * t.second};
     for (int k = 0; k < 4; ++k) {
@@ -53,12 +57,14 @@ glm::dvec3 rest_place(const Body& body, const tissue::ContactPoint& at) noexcept
 // Modes stay good while the factor is the same and no contact has left the middle of its star.
 bool contacts_are_there(const Body& body, std::span<const tissue::BasisContact> contacts) noexcept {
     const SoftBody& soft = *body.soft;
-    constexpr double kMiddle_m = 1e-3;
+    constexpr double kMiddle = 0.25; // of an arm
     if (soft.basis_contacts != contacts.size() || soft.basis.modes == 0)
         return false;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         const glm::dvec3 moved = rest_place(body, contacts[i].centre) - soft.basis_rest_m[i];
-        if (!(glm::dot(moved, moved) < kMiddle_m * kMiddle_m) ||
+        const double middle_m =
+            kMiddle * arm_of_star_m(body, static_cast<int>(contacts[i].centre.triangle));
+        if (!(glm::dot(moved, moved) < middle_m * middle_m) ||
             contacts[i].held != soft.basis_held[i])
             return false;
     }

@@ -87,8 +87,8 @@ ToolsNow tools_at(const ComplexityOptions& o, int step) {
             2.0 * std::numbers::pi * (static_cast<double>(step) / o.steps - 0.1 * i);
         const double around = 2.0 * std::numbers::pi * i / kTools;
         const glm::dvec3 at{
-            0.5 * kSize_m.x + kAside_m * std::cos(around) + kRound_m * std::cos(3.0 * phase),
-            0.5 * kSize_m.y + kAside_m * std::sin(around) + kRound_m * std::sin(3.0 * phase), 0.0};
+            0.5 * kSize_m.x + kAside_m * std::cos(around) + kRound_m * std::cos(phase),
+            0.5 * kSize_m.y + kAside_m * std::sin(around) + kRound_m * std::sin(phase), 0.0};
         const double down_m = 0.5 * (1.0 - std::cos(phase)) * (o.depth_m + kAbove_m) - kAbove_m;
         tools.tip[i].centre_m = {at.x, at.y, kSize_m.z + kTip_m - down_m};
         tools.tip[i].radius_m = kTip_m;
