@@ -1,8 +1,10 @@
 // The complexity study's CSV, charts and page; see complexity_study.h.
 #include "sim/study/complexity_study.h"
 #include "sim/study/machine.h"
-#include "sim/study/svg_chart.h"
+#include "sim/study/xy_chart.h"
 
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace sim {
@@ -34,28 +36,59 @@ std::string named(tissue::Tier tier, const std::vector<std::pair<double, double>
     return fmt::format("{}, {}: n^{:.2f}", tissue::name_of(tier), what, growth(points).exponent);
 }
 
+std::vector<std::string> notes(const ComplexityOptions& o) {
+    return {
+        fmt::format("Block 80 x 80 x 40 mm, E {:g} kPa, nu {:g}, three tips of 1.5 mm to {:g} mm, "
+                    "{} steps of 10 ms",
+                    1e-3 * o.young_pa, o.poisson, 1e3 * o.depth_m, o.steps),
+        "Mesh of a fixed seed. " + machine()};
+}
+
+// From below the least to above the most of what is drawn.
+XyAxis axis_around(const std::string& title, const std::vector<XySeries>& series, bool x) {
+    XyAxis axis{.title = title, .low = 1e300, .high = 0.0, .logarithmic = true};
+    constexpr double kMargin = 1.3;
+    for (const XySeries& line : series) {
+        for (const auto& [nodes, value] : line.point) {
+            axis.low = std::min(axis.low, (x ? nodes : value) / kMargin);
+            axis.high = std::max(axis.high, (x ? nodes : value) * kMargin);
+        }
+    }
+    return axis;
+}
+
+std::string chart(const ComplexityOptions& o, const std::string& title, const std::string& unit,
+                  std::vector<XySeries> series) {
+    const XyAxis x = axis_around("nodes", series, true), y = axis_around(unit, series, false);
+    return xy_svg({.title = title, .notes = notes(o), .x = x, .y = y, .series = std::move(series)});
+}
+
 std::string time_chart(const ComplexityOptions& o, const std::vector<ComplexityRow>& rows) {
-    std::vector<ChartLine> lines;
+    std::vector<XySeries> lines;
     for (std::size_t k = 0; k < o.tiers.size(); ++k) {
         const auto mean = points(rows, o.tiers[k], &ComplexityRow::mean_ms),
                    tail = points(rows, o.tiers[k], &ComplexityRow::p99_ms);
-        const int colour = static_cast<int>(k);
-        lines.push_back({named(o.tiers[k], mean, "mean"), colour, false, mean});
-        lines.push_back({named(o.tiers[k], tail, "p99"), colour, true, tail});
+        const int colour = static_cast<int>(k) + 1;
+        lines.push_back({.name = named(o.tiers[k], mean, "mean"), .colour = colour, .point = mean});
+        lines.push_back({.name = named(o.tiers[k], tail, "p99"),
+                         .colour = colour,
+                         .mark = XyMark::ring,
+                         .dashed = true,
+                         .point = tail});
     }
-    return log_log_svg({"A whole FEM step with three tools pressing and sliding", "nodes",
-                        "CPU of all threads, ms a step"},
-                       lines);
+    return chart(o, "A whole FEM step with three tools pressing and sliding",
+                 "CPU of all threads, ms a step", std::move(lines));
 }
 
 std::string memory_chart(const ComplexityOptions& o, const std::vector<ComplexityRow>& rows) {
-    std::vector<ChartLine> lines;
+    std::vector<XySeries> lines;
     for (std::size_t k = 0; k < o.tiers.size(); ++k) {
         const auto held = points(rows, o.tiers[k], &ComplexityRow::megabytes);
-        lines.push_back({named(o.tiers[k], held, "heap"), static_cast<int>(k), false, held});
+        lines.push_back({.name = named(o.tiers[k], held, "heap"),
+                         .colour = static_cast<int>(k) + 1,
+                         .point = held});
     }
-    return log_log_svg({"What a body and all that its steps need hold", "nodes", "megabytes"},
-                       lines);
+    return chart(o, "What a body and all that its steps need hold", "megabytes", std::move(lines));
 }
 
 std::string table(const ComplexityOptions& o, const std::vector<ComplexityRow>& rows) {

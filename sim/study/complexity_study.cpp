@@ -137,8 +137,8 @@ ComplexityRow run_one(const ComplexityOptions& o, int nodes, tissue::Tier tier) 
     }
     row.megabytes = heap_megabytes() - heap;
     std::ranges::sort(ms);
-    const auto at = [&](double share) {
-        return ms[std::min(ms.size() - 1, static_cast<std::size_t>(share * double(ms.size())))];
+    const auto at = [&](double share) { // nearest rank
+        return ms[static_cast<std::size_t>(std::ceil(share * static_cast<double>(ms.size()))) - 1];
     };
     row.p50_ms = at(0.5);
     row.p99_ms = at(0.99);
