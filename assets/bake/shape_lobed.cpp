@@ -1,3 +1,5 @@
+// assets/bake/shape_lobed.cpp
+// Organs of ellipsoids melted into one, wrinkled by lobes: distance and its bounds.
 #include "assets/bake/shape.h"
 
 #include <algorithm>

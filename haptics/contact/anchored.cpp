@@ -1,3 +1,5 @@
+// haptics/contact/anchored.cpp
+// The `anchored` coupling; see coupling.h.
 #include "haptics/contact/coupling.h"
 
 #include "haptics/contact/model_step.h"

@@ -1,3 +1,5 @@
+// haptics/contact/hold.cpp
+// The `hold` coupling: the newest answer as it came; see coupling.h.
 #include "haptics/contact/coupling.h"
 
 namespace haptics {

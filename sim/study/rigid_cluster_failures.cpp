@@ -1,3 +1,5 @@
+// sim/study/rigid_cluster_failures.cpp
+// A flat face sampled by many points: its stiffness without and with clusters of contacts.
 #include "haptics/rigid/contact_clusters.h"
 #include "haptics/rigid/voxel_contacts.h"
 #include "sim/study/rigid_failures.h"

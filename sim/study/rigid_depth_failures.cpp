@@ -1,3 +1,5 @@
+// sim/study/rigid_depth_failures.cpp
+// Tools deep in thin and concave things: where the nearest way out leads, by method.
 #include "haptics/rigid/penetration.h"
 #include "haptics/rigid/step_rigid.h"
 #include "sim/study/rigid_failures.h"

@@ -1,3 +1,5 @@
+// tests/bake/ground_test.cpp
+// The ground under the organs: its outline, its depth, its bits.
 #include "assets/bake/shape_ground.h"
 
 #include "tests/bake/shapes_for_tests.h"

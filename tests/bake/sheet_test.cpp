@@ -1,3 +1,5 @@
+// tests/bake/sheet_test.cpp
+// Sheets and flaps: volume, skin and tetrahedra of one body, quality.
 #include "assets/bake/nearest.h"
 #include "assets/bake/quality.h"
 #include "assets/bake/shape_sheet.h"

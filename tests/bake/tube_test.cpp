@@ -1,3 +1,5 @@
+// tests/bake/tube_test.cpp
+// Tubes along a centreline: volumes by formula, skin and tetrahedra of one body, quality.
 #include "assets/bake/centreline.h"
 #include "assets/bake/nearest.h"
 #include "assets/bake/quality.h"

@@ -1,3 +1,5 @@
+// tests/haptics/anchored_test.cpp
+// The anchored coupling against a mass on a spring stepped at 1 kHz, answers late as they may be.
 #include "haptics/contact/coupling.h"
 
 #include "haptics/contact/model_step.h"

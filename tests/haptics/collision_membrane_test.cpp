@@ -1,3 +1,5 @@
+// tests/haptics/collision_membrane_test.cpp
+// A tip before a membrane thinner than its step, by every method of collision.
 #include "haptics/collision/index.h"
 #include "tests/haptics/collision_meshes.h"
 #include "tests/haptics/effort.h"

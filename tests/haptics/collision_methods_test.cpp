@@ -1,3 +1,5 @@
+// tests/haptics/collision_methods_test.cpp
+// Every method of collision beside brute force, on meshes that move and degenerate.
 #include "haptics/collision/index.h"
 #include "haptics/collision/witness.h"
 #include "tests/haptics/collision_meshes.h"

@@ -1,3 +1,5 @@
+// tests/haptics/coupling_stability_test.cpp
+// Above which stiffness a coupling rings, against the closed forms for a held spring.
 #include "haptics/contact/coupling.h"
 
 #include "tests/haptics/mass_spring.h"

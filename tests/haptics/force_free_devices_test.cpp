@@ -1,3 +1,5 @@
+// tests/haptics/force_free_devices_test.cpp
+// The two devices that push nobody: the mouse and the recording.
 #include "haptics/device/mouse_device.h"
 #include "haptics/device/replay_device.h"
 

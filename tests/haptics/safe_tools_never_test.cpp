@@ -1,3 +1,5 @@
+// tests/haptics/safe_tools_never_test.cpp
+// What must never happen to tools: inside a triangle, through a membrane, through each other.
 #include "tests/haptics/effort.h"
 #include "tests/haptics/tool_bench.h"
 

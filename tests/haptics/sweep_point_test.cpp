@@ -1,3 +1,5 @@
+// tests/haptics/sweep_point_test.cpp
+// The swept point at its edges: hovering over and along a triangle.
 #include "haptics/collision/triangle.h"
 
 #include <doctest/doctest.h>

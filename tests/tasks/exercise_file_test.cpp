@@ -1,3 +1,5 @@
+// tests/tasks/exercise_file_test.cpp
+// Exercise files: what is read, and how mistakes and any bytes at all are refused.
 #include "tasks/exercise/exercise.h"
 
 #include "relative.h"

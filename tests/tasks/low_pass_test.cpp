@@ -1,3 +1,5 @@
+// tests/tasks/low_pass_test.cpp
+// The zero-phase low pass of positions, against the gain of its Butterworth filter.
 #include "tasks/score/metrics.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// tests/tasks/sparc_test.cpp
+// SPARC against the published vector, its invariances and a closed-form spectrum.
 #include "tasks/score/smoothness.h"
 
 #include "relative.h"

@@ -1,3 +1,5 @@
+// tests/tasks/touch_points_test.cpp
+// The fold of touch-points: when a target counts as touched, and what is an error.
 #include "tasks/exercise/progress.h"
 
 #include "relative.h"
