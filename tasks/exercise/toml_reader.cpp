@@ -62,6 +62,42 @@ std::string first_line(const std::string& text) {
     return text.substr(0, std::min(text.find('\n'), std::size_t{160}));
 }
 
+// Length of the UTF-8 sequence that `text` begins with; 0: it begins with none. Table 3-7 of the
+// Unicode standard: no overlong form, no surrogate, nothing above U+10FFFF.
+std::size_t utf8_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned lead = byte(0);
+    if (lead < 0x80)
+        return 1;
+    const std::size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
+    if (lead < 0xc2 || lead > 0xf4 || text.size() < length)
+        return 0;
+    const unsigned low = lead == 0xe0 ? 0xa0 : lead == 0xf0 ? 0x90 : 0x80;
+    const unsigned high = lead == 0xed ? 0x9f : lead == 0xf4 ? 0x8f : 0xbf;
+    if (byte(1) < low || byte(1) > high)
+        return 0;
+    for (std::size_t i = 2; i < length; ++i) {
+        if ((byte(i) & 0xc0) != 0x80)
+            return 0;
+    }
+    return length;
+}
+
+// toml11 checks the bytes of basic strings only; in literal ones and comments it takes any.
+void require_utf8(std::string_view text, const std::string& file) {
+    std::size_t line = 1;
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t length = utf8_length(text.substr(i));
+        if (length == 0) {
+            std::ostringstream byte;
+            byte << "byte 0x" << std::hex << static_cast<int>(static_cast<unsigned char>(text[i]));
+            fail(file, line, byte.str() + " is not UTF-8: text in UTF-8 is accepted");
+        }
+        line += text[i] == '\n';
+        i += length;
+    }
+}
+
 std::size_t line_of_deep_nesting(std::string_view text) {
     int open = 0;
     std::size_t line = 1;
@@ -88,6 +124,7 @@ std::string message_of(const Mention& at, const std::string& accepted) {
 
 TomlTable TomlTable::parse(std::string_view text, std::string_view file) {
     const std::string name(file);
+    require_utf8(text, name);
     if (const std::size_t line = line_of_deep_nesting(text); line != 0)
         fail(name, line, "brackets nest too deep: not a file of ours");
     // toml11 asserts on a key or value cut off by the end of the bytes unless a newline follows.

@@ -42,7 +42,7 @@ struct BadInput : std::invalid_argument {
 /// One table of a file. Copies are cheap views of the same parsed file.
 class TomlTable {
   public:
-    /// The whole file. `text` may be any bytes.
+    /// The whole file. `text` may be any bytes; other than UTF-8 they are refused.
     static TomlTable parse(std::string_view text, std::string_view file);
 
     /// Any other key in this table is an error; the message lists these.

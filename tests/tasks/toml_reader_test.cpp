@@ -66,3 +66,23 @@ TEST_CASE("pairs of numbers are read, and what is none is named with what would 
         CHECK(said.ends_with(accepted));
     }
 }
+
+TEST_CASE("bytes that are not UTF-8 are refused with their line, wherever they stand") {
+    const auto read = [](const TomlTable& t) { t.text("a"); };
+    // the edges of table 3-7 of the Unicode standard: lone and cut sequences, overlong forms,
+    // surrogates, above U+10FFFF
+    for (const char* bad : {"\xff", "\x80", "\xc3", "\xc1\xbf", "\xe0\x9f\xbf", "\xe2\x82",
+                            "\xed\xa0\x80", "\xf0\x8f\xbf\xbf", "\xf4\x90\x80\x80", "\xf5\x80"}) {
+        const std::string said = message("\na = 'x" + std::string(bad) + "'\n", read);
+        CAPTURE(said);
+        CHECK(said.starts_with("f:2: byte 0x"));
+        CHECK(said.ends_with(" is not UTF-8: text in UTF-8 is accepted"));
+        CHECK(message("a = \"" + std::string(bad) + "\"\n", read).starts_with("f:1: byte 0x"));
+        CHECK(message("a = 'x' # " + std::string(bad), read).starts_with("f:1: byte 0x"));
+        CHECK(message(std::string(bad) + " = 1\n", read).starts_with("f:1: byte 0x"));
+    }
+    for (const char* good : {"\x7e", "\xc2\x80", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf",
+                             "\xee\x80\x80", "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf"}) {
+        CHECK(message("a = 'x" + std::string(good) + "'\n", read) == "accepted");
+    }
+}
