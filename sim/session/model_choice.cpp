@@ -10,12 +10,18 @@
 namespace sim {
 namespace {
 
+// What was wrong with `text`, and all that --model accepts.
+[[noreturn]] void refuse(const std::string& text, const std::string& what) {
+    throw std::invalid_argument(
+        fmt::format("model \"{}\": {}; accepted: auto, or one of {} for every organ, or "
+                    "ORGAN=MODEL[,ORGAN=MODEL..] for some of them, alone or after that one",
+                    text, what, fmt::join(tissue::kTierNames, ", ")));
+}
+
 tissue::Tier tier_in(std::string_view word, const std::string& text) {
     const auto tier = tissue::tier_named(word);
-    if (!tier) {
-        throw std::invalid_argument(fmt::format("model \"{}\": \"{}\" is none of {}", text, word,
-                                                fmt::join(tissue::kTierNames, ", ")));
-    }
+    if (!tier)
+        refuse(text, fmt::format("\"{}\" is no model", word));
     return *tier;
 }
 
@@ -30,21 +36,15 @@ ModelChoice parse_model(const std::string& text, std::span<const std::string> or
         rest = comma == std::string_view::npos ? std::string_view{} : rest.substr(comma + 1);
         const std::size_t equals = part.find('=');
         if (equals == std::string_view::npos) {
-            if (!first) {
-                throw std::invalid_argument(
-                    fmt::format("model \"{}\": after the first comma only ORGAN=MODEL is accepted, "
-                                "not \"{}\"",
-                                text, part));
-            }
+            if (!first)
+                refuse(text, fmt::format("\"{}\" after a comma names no organ", part));
             std::fill(choice.begin(), choice.end(), tier_in(part, text));
             continue;
         }
         const auto named = std::find(organ.begin(), organ.end(), part.substr(0, equals));
         if (named == organ.end()) {
-            throw std::invalid_argument(fmt::format("model \"{}\": no organ \"{}\"; the scene has "
-                                                    "{}",
-                                                    text, part.substr(0, equals),
-                                                    fmt::join(organ, ", ")));
+            refuse(text, fmt::format("no organ \"{}\", the scene has {}", part.substr(0, equals),
+                                     fmt::join(organ, ", ")));
         }
         choice[static_cast<std::size_t>(named - organ.begin())] =
             tier_in(part.substr(equals + 1), text);

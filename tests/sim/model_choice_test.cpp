@@ -39,7 +39,7 @@ TEST_CASE("model choice: what is written is what was chosen, as far as it deform
           "corotated");
 }
 
-TEST_CASE("model choice: a wrong word is named, with what would be accepted") {
+TEST_CASE("model choice: a wrong word is named, with all that would be accepted") {
     const auto message = [](const std::string& text) {
         try {
             sim::parse_model(text, kOrgan);
@@ -50,11 +50,17 @@ TEST_CASE("model choice: a wrong word is named, with what would be accepted") {
     };
     const auto says = [&](const std::string& text, const std::string& what) {
         INFO(text);
-        CHECK(message(text).find(what) != std::string::npos);
+        const std::string said = message(text);
+        CHECK(said.starts_with("model \"" + text + "\": " + what + "; accepted: "));
+        for (const std::string_view accepted : tissue::kTierNames)
+            CHECK(said.find(accepted, said.find("accepted")) != std::string::npos);
+        CHECK(said.find("auto") != std::string::npos);
+        CHECK(said.find("ORGAN=MODEL[,ORGAN=MODEL..]") != std::string::npos);
     };
-    says("plastic", "\"plastic\" is none of rigid, linear-compliance, corotated, quadratic");
-    says("", "\"\" is none of");
-    says("corotated,liver=rigid", "no organ \"liver\"; the scene has flap, artery, wall");
-    says("corotated,rigid", "only ORGAN=MODEL");
-    says("corotated,flap=", "\"\" is none of");
+    says("plastic", "\"plastic\" is no model");
+    says("", "\"\" is no model");
+    says("corotated,liver=rigid", "no organ \"liver\", the scene has flap, artery, wall");
+    says("corotated,rigid", "\"rigid\" after a comma names no organ");
+    says("corotated,flap=", "\"\" is no model");
+    says("corotated,flap=auto", "\"auto\" is no model");
 }
