@@ -146,3 +146,24 @@ TEST_CASE("a rod that cannot be is refused with the node or value") {
     CHECK_THROWS_AS(tissue::round_section(material, -1.0), std::invalid_argument);
     CHECK_THROWS_AS(tissue::round_section(material, 1.0, 1.0), std::invalid_argument);
 }
+
+TEST_CASE("a rod that is held farther than its clamp needs hangs by q L^4/(8 E I) all the same") {
+    const tissue::Material material = rods::elastic();
+    const auto section = tissue::round_section(material, 3e-3);
+    constexpr int kEdges = 30;
+    const double length_m = 0.03, gravity_mps2 = 0.2;
+    std::vector<dvec3> node_m;
+    std::vector<std::uint8_t> held;
+    for (int i = -4; i <= kEdges; ++i) {
+        node_m.emplace_back(length_m * i / kEdges, 0.0, 0.0);
+        held.push_back(i < 1 ? 1 : 0);
+    }
+    const tissue::RodModel model =
+        tissue::make_rod(node_m, std::array{section}, material, held, {0, 0, -gravity_mps2});
+    tissue::RodState state = rest_state(model);
+    tissue::RodSystem system = make_system(model);
+    CHECK(rods::step(model, kStatics_s, {}, system, state).converged);
+    const double sag_m =
+        section.mass_kgpm * gravity_mps2 * std::pow(length_m, 4) / (8 * section.bend_nm2);
+    CHECK(-state.position_m.back().z == doctest::Approx(sag_m).scale(0.0).epsilon(0.005));
+}
