@@ -3,6 +3,7 @@
 #include "tissue/baseline/baseline.h"
 
 #include "tissue/solver/corotated_element.h"
+#include "tissue/solver/plain_vectors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,18 +11,8 @@
 #include <stdexcept>
 
 namespace tissue {
-namespace {
 
 using glm::dvec3;
-
-double norm(std::span<const double> v) noexcept {
-    double sum = 0.0;
-    for (const double x : v)
-        sum += x * x;
-    return std::sqrt(sum);
-}
-
-} // namespace
 
 // Of the symmetric M^-1/2 K M^-1/2, whose Rayleigh quotient errs by the square of the vector's
 // error (Golub & Van Loan 2013, 8.2.1): it rises to the eigenvalue.
@@ -41,7 +32,7 @@ double greatest_frequency_radps(const CorotatedModel& body, const StiffnessProdu
     }
     double last = 0.0;
     for (int k = 1; k <= kMaxIterations; ++k) {
-        const double size = norm(v);
+        const double size = norm_of(v);
         for (std::size_t i = 0; i < n; ++i) {
             v[i] /= size;
             scaled[i] = inverse_root_mass[i] * v[i];

@@ -4,6 +4,7 @@
 #include "tissue/reference/reference_newton.h"
 
 #include "tissue/reference/reference_element.h"
+#include "tissue/solver/plain_vectors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,20 +14,6 @@ namespace tissue {
 namespace {
 
 using glm::dvec3;
-
-double norm(std::span<const double> v) noexcept {
-    double sum = 0.0;
-    for (const double x : v)
-        sum += x * x;
-    return std::sqrt(sum);
-}
-
-double product_of(std::span<const double> a, std::span<const double> b) noexcept {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        sum += a[i] * b[i];
-    return sum;
-}
 
 // Displacements from rest: `now` where Newton is, `trial` where it looks. The rest per component.
 struct Search {
@@ -101,8 +88,8 @@ double relative_residual(Search& s) noexcept {
         if (s.model.unknown[i] >= 0)
             sum += s.residual_n[i] * s.residual_n[i];
     }
-    const double size =
-        norm(s.force_n) + norm(s.system.internal_n) + norm(s.contact_n) + norm(s.inertia_n);
+    const double size = norm_of(s.force_n) + norm_of(s.system.internal_n) + norm_of(s.contact_n) +
+                        norm_of(s.inertia_n);
     return size == 0.0 ? 0.0 : std::sqrt(sum) / size; // not a number stays so
 }
 

@@ -2,6 +2,8 @@
 // Static equilibrium of a corotated body: at load (rest under gravity), in studies and tests.
 #include "tissue/solver/corotated.h"
 
+#include "tissue/solver/plain_vectors.h"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -10,20 +12,6 @@ namespace tissue {
 namespace {
 
 using glm::dvec3;
-
-double norm(std::span<const double> v) noexcept {
-    double sum = 0.0;
-    for (const double x : v)
-        sum += x * x;
-    return std::sqrt(sum);
-}
-
-double product_of(std::span<const double> a, std::span<const double> b) noexcept {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        sum += a[i] * b[i];
-    return sum;
-}
 
 // Load and weight on the unknowns.
 std::vector<double> total_load_n(const CorotatedModel& model, std::span<const double> load_n) {
@@ -90,8 +78,8 @@ StaticReport solve_static(const CorotatedModel& model, std::span<const double> l
         double elastic2 = 0.0;
         for (const dvec3& f : nodal)
             elastic2 += glm::dot(f, f);
-        const double size = norm(total) + std::sqrt(elastic2);
-        report.relative_residual = size > 0.0 ? norm(residual) / size : 0.0;
+        const double size = norm_of(total) + std::sqrt(elastic2);
+        report.relative_residual = size > 0.0 ? norm_of(residual) / size : 0.0;
         report.converged = report.relative_residual <= tolerance;
         if (report.converged || report.iterations >= max_iterations || !system.factored)
             break;
