@@ -61,6 +61,7 @@ sim::SoftBody some_tissue() {
             {},
             {},
             {},
+            {},
             {}};
 }
 
