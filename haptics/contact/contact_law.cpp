@@ -42,16 +42,35 @@ Entry lookup(
     return {low + part * (high - low), (high - low) / x_step};
 }
 
-// The table's last point and the slope of D over force there.
-struct TableEnd {
+// D up to where the law goes on along a slope over force.
+struct Stretch {
     double force_n, depth_m, slope_mpn;
 };
 
-TableEnd end_of(const IndenterTable& t, const Level& level) noexcept {
-    const double x = (IndenterTable::kEntries - 1) * t.x_step;
+Stretch stretch_to(const IndenterTable& t, const Level& level, double x) noexcept {
     const Entry g = lookup(t.depth_over_x_m, level, x, t.x_step);
     return {t.force_scale_n * x * x * x, x * g.value,
             (g.value + x * g.slope) / (3.0 * t.force_scale_n * x * x)};
+}
+
+// To the end of the table, or to where D's slope, which falls with force, has come to `least_mpn`.
+Stretch valid_stretch(const IndenterTable& t, const Level& level, double least_mpn) noexcept {
+    Stretch end = stretch_to(t, level, (IndenterTable::kEntries - 1) * t.x_step);
+    if (end.slope_mpn >= least_mpn)
+        return end;
+    double low = t.x_step, high = (IndenterTable::kEntries - 1) * t.x_step;
+    while (high - low > 1e-3 * t.x_step) {
+        const double x = 0.5 * (low + high);
+        (stretch_to(t, level, x).slope_mpn > least_mpn ? low : high) = x;
+    }
+    end = stretch_to(t, level, low);
+    end.slope_mpn = least_mpn;
+    return end;
+}
+
+double punch_mpn(const IndenterTable& t, const Level& level) noexcept {
+    return (1.0 - level.weight) * t.punch_mpn[level.index] +
+           level.weight * t.punch_mpn[level.index + 1];
 }
 
 } // namespace
@@ -63,15 +82,15 @@ LawPoint law_at(const LocalLaw& law, double x) noexcept {
     }
     const IndenterTable& t = *law.table;
     const Level level = level_of(t, law.radius_over_thickness);
-    const TableEnd end = end_of(t, level);
     const double force = t.force_scale_n * x * x * x;
     const double dforce = 3.0 * t.force_scale_n * x * x;
 
-    // D's slope falls with force, so its value at the end of the table is the smallest: this
-    // linear part keeps the slope of the sum at 1/Kc or more everywhere
-    const double linear = std::max(law.normal_mpn, law.floor_mpn - end.slope_mpn);
+    // At small strain D's slope falls to that of a punch: this linear part keeps the slope of the
+    // sum at 1/Kc or more as far as that holds, and D ends where it no longer does
+    const double linear = std::max(law.normal_mpn, law.floor_mpn - punch_mpn(t, level));
+    const Stretch end = valid_stretch(t, level, law.floor_mpn - linear);
 
-    // beyond the table the contact radius stays, so D goes on along its last slope
+    // beyond the table D goes on along its last slope
     if (force > end.force_n)
         return {force, end.depth_m + end.slope_mpn * (force - end.force_n) + linear * force, dforce,
                 (end.slope_mpn + linear) * dforce};
@@ -94,8 +113,8 @@ GraspCompliance grasp_compliance(const LocalLaw& law) noexcept {
     const Level level = level_of(t, law.radius_over_thickness);
     const double x = (IndenterTable::kEntries - 1) * t.x_step;
     const double grown_m = lookup(t.contact_radius_m, level, x, t.x_step).value;
-    const double punch_mpn = end_of(t, level).slope_mpn * grown_m / kHeldRadius_m;
-    return {std::max(punch_mpn + law.normal_mpn, law.floor_mpn),
+    const double held_mpn = punch_mpn(t, level) * grown_m / kHeldRadius_m;
+    return {std::max(held_mpn + law.normal_mpn, law.floor_mpn),
             std::max(t.tangential_m2pn / kHeldRadius_m + law.tangential_mpn, law.floor_mpn)};
 }
 

@@ -5,6 +5,7 @@
 //
 //   depth(P) = D(P, T) + linear * P        D: sphere on a layer of thickness T (Sneddon; Hayes)
 //   monotone in P, steep at first contact, slope never below the coupling floor 1/Kc
+// Where tissue at finite strain would bring the slope below the floor, it goes on along the floor.
 #pragma once
 
 #include <array>
@@ -23,6 +24,7 @@ struct IndenterTable {
     std::array<double, kLevels> radius_over_thickness{};
     std::array<std::array<double, kEntries>, kLevels> depth_over_x_m{};
     std::array<std::array<double, kEntries>, kLevels> contact_radius_m{};
+    std::array<double, kLevels> punch_mpn{}; // a flat punch of the tip's radius, at small strain
 };
 
 /// The law at one place. No table: a rigid body, `normal_mpn` alone.

@@ -1,6 +1,7 @@
 #include "sim/bridge/body.h"
 
 #include "tissue/response/boundary_tree.h"
+#include "tissue/response/finite_sphere.h"
 #include "tissue/response/footprint.h"
 #include "tissue/response/subgrid.h"
 
@@ -17,13 +18,16 @@ namespace {
 std::shared_ptr<const haptics::IndenterTable> make_table(const tissue::Material& material,
                                                          double tip_radius_m) {
     using Table = haptics::IndenterTable;
-    const tissue::SphereLaw law = tissue::make_sphere_law(
+    const tissue::SphereLaw law = tissue::make_finite_sphere_law(
         tip_radius_m, material.young_pa, material.poisson, Table::kLevels, Table::kEntries);
     auto table = std::make_shared<Table>();
     table->force_scale_n = law.force_scale_n;
     table->x_step = law.x_step;
     for (int level = 0; level < Table::kLevels; ++level) {
         table->radius_over_thickness[level] = law.radius_over_thickness[level];
+        table->punch_mpn[level] =
+            tissue::punch_compliance_mpn(material.young_pa, material.poisson, tip_radius_m,
+                                         tip_radius_m / law.radius_over_thickness[level]);
         std::copy_n(law.depth_over_x_m[level].begin(), Table::kEntries,
                     table->depth_over_x_m[level].begin());
         std::copy_n(law.contact_radius_m[level].begin(), Table::kEntries,

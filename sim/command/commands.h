@@ -24,6 +24,7 @@ void add_solid_studies(CLI::App& study, int& exit_code);  // beam, block, cook
 void add_solid_charts(CLI::App& study);                   // locking, large, tradeoff
 void add_study_contact(CLI::App& study);                  // one of its charts, in a file of its own
 void add_why_study(CLI::App& study);
+void add_study_indenter(CLI::App& study);
 void add_study_organ(CLI::App& study);
 void add_import(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);

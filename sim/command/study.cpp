@@ -75,6 +75,7 @@ void add_study(CLI::App& app, int& exit_code) {
     CLI::App* c = app.add_subcommand("study", "The charts: CSV and one page each");
     c->require_subcommand(1);
     add_coupling(*c, a);
+    add_study_indenter(*c);
     add_study_organ(*c);
     add_levels(*c);
     add_failures_study(*c, exit_code);

@@ -9,6 +9,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
 
 namespace sim {
 namespace {
@@ -21,6 +23,7 @@ struct OrganArguments {
     bool reference = false;
     std::vector<double> toward{0.0, 0.0, 0.0};
     double hold_length_mm = 10.0, tip_mm = 1.5, friction = 0.1;
+    std::string tier = "corotated", record;
     OrganReferenceOptions beside;
 };
 
@@ -46,6 +49,14 @@ void beside_reference(OrganArguments& a, bool depths_given) {
     o.press.radius_m = 1e-3 * a.tip_mm;
     o.press.friction = a.friction;
     o.press.depth_m = reference_depths_m(a.organ.depth_mm, depths_given);
+    const std::optional<tissue::Tier> tier = tissue::tier_named(a.tier);
+    if (!tier)
+        throw std::invalid_argument("--tier " + a.tier + ": want corotated or quadratic");
+    o.tier = *tier;
+    if (!a.record.empty())
+        o.record = a.record;
+    else if (!a.out.empty())
+        o.record = std::filesystem::path(a.out) / "reference.presses";
     const OrganReference study =
         run_organ_reference(o, [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
     for (const auto& [name, text] : organ_reference_files(o, study)) {
@@ -112,6 +123,10 @@ void add_study_organ(CLI::App& study) {
     c->add_option("--edge", a->beside.press.edge_share,
                   "Longest edge under its tip, of the radius");
     c->add_option("--step", a->beside.press.step_share, "Its greatest step, of the radius");
+    c->add_option("--tier", a->tier, "Of the trainer's tissue beside it: corotated, quadratic");
+    c->add_option("--model", a->beside.model, "The organ's mesh for the trainer's tissue");
+    c->add_option("--record", a->record,
+                  "What the reference has pressed: goes on where it was; else in --out");
     c->add_option("--hold-toward", a->toward, "Hold the organ by a bed on this side instead")
         ->expected(3);
     c->add_option("--hold-share", a->beside.hold.share, "Of its extent that way");

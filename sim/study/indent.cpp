@@ -25,10 +25,10 @@ bool anchored_below(const Body& body, const tissue::Triangle& corners) {
 } // namespace
 
 Indenter::Indenter(std::shared_ptr<const tissue::BakedOrgan> organ,
-                   const tissue::Material& material, double tip_radius_m)
+                   const tissue::Material& material, double tip_radius_m, tissue::Tier tier)
     : body_(make_body(std::move(organ), material,
                       TipRadii{tip_radius_m, tip_radius_m, tip_radius_m},
-                      std::numeric_limits<double>::infinity())),
+                      std::numeric_limits<double>::infinity(), tier)),
       feel_(body_), radius_m_(tip_radius_m) {
     if (!body_.soft)
         throw std::invalid_argument("a rigid organ cannot be indented");

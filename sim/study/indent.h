@@ -22,7 +22,7 @@ class Indenter {
   public:
     Indenter(const Indenter&) = delete;
     Indenter(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Material& material,
-             double tip_radius_m);
+             double tip_radius_m, tissue::Tier tier = tissue::Tier::corotated);
 
     /// Force at `depth_m` with the tip pressed along the skin's normal at the skin point nearest
     /// to `near_m`.

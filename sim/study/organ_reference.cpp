@@ -3,6 +3,7 @@
 
 #include "sim/session/rehold.h"
 #include "sim/study/organ_study.h"
+#include "sim/study/reference_record.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,6 +79,20 @@ void add_rows(const OrganReferenceOptions& o, int place, OrganReference& study) 
     }
 }
 
+// All that a press depends on, so that a record is never taken for another's.
+std::string record_key(const OrganReferenceOptions& o, const tissue::BakedOrgan& organ) {
+    std::string key = fmt::format(
+        "# organ reference: {} ({} nodes, {} tets), E {} Pa, nu {}, hold {} {} {} {} {}, seed {}, "
+        "radius {} m, friction {}, edge {}, step {}, depths",
+        organ.name, organ.mesh.rest_m.size(), organ.mesh.tets.size(), o.material.young_pa,
+        o.material.poisson, o.hold.toward.x, o.hold.toward.y, o.hold.toward.z, o.hold.share,
+        o.hold.length_m, o.seed, o.press.radius_m, o.press.friction, o.press.edge_share,
+        o.press.step_share);
+    for (const double d : o.press.depth_m)
+        key += fmt::format(" {}", d);
+    return key;
+}
+
 } // namespace
 
 OrganReference run_organ_reference(const OrganReferenceOptions& o,
@@ -90,27 +105,38 @@ OrganReference run_organ_reference(const OrganReferenceOptions& o,
             fmt::format("tip radius {} mm: '{}' was baked for at most {} mm",
                         1e3 * o.press.radius_m, organ->name, 1e3 * organ->tip_radius_max_m));
     }
-    Indenter indenter(organ, o.material, o.press.radius_m);
-    OrganReference study{.nodes = static_cast<int>(organ->mesh.rest_m.size()),
-                         .tets = static_cast<int>(organ->mesh.tets.size())};
-    for (const dvec3& place : random_places(indenter.body(), o.places, o.seed)) {
+    Indenter usual(organ, o.material, o.press.radius_m);
+    const OrganPointer model = o.model.empty() ? organ : held_organ(load_organ(o.model), o.hold);
+    Indenter indenter(model, o.material, o.press.radius_m, o.tier);
+    OrganReference study{.nodes = static_cast<int>(model->mesh.rest_m.size()),
+                         .tets = static_cast<int>(model->mesh.tets.size())};
+    const std::string key = record_key(o, *organ);
+    study.reference = read_presses(o.record, key);
+    for (const dvec3& place : random_places(usual.body(), o.places, o.seed)) {
         const int i = static_cast<int>(study.place.size());
         study.place.push_back(indenter.press(place, o.press.depth_m));
-        const IndentPoint& p = study.place.back();
-        study.reference.push_back(press_reference(
-            *organ, o.material, p.place_m, -p.normal, o.press, [&](double depth_m, double force_n) {
-                say(fmt::format("place {:>2}: {:5.2f} mm, {:4.0f} mN", i + 1, 1e3 * depth_m,
-                                1e3 * force_n));
-            }));
+        if (i == static_cast<int>(study.reference.size())) {
+            const IndentPoint p = usual.press(place, {});
+            study.reference.push_back(
+                press_reference(*organ, o.material, p.place_m, -p.normal, o.press,
+                                [&](double depth_m, double force_n) {
+                                    say(fmt::format("place {:>2}: {:5.2f} mm, {:4.0f} mN", i + 1,
+                                                    1e3 * depth_m, 1e3 * force_n));
+                                }));
+            if (!o.record.empty())
+                write_presses(o.record, key, study.reference);
+        }
         add_rows(o, i, study);
         const ReferencePress& r = study.reference.back();
         const ReferenceRow last = study.row[study.row.size() - o.press.depth_m.size() +
                                             std::max<std::size_t>(r.force_n.size(), 1) - 1];
         say(fmt::format("place {:>2} of {}: reference to {:.2f} mm ({} nodes, {} solves, {:.0f} s "
-                        "CPU); there {:.0f} mN, ours {:.0f} mN",
+                        "CPU); there {:.0f} mN, ours {:.0f} mN{}{}",
                         i + 1, o.places, 1e3 * r.reached_m, r.nodes, r.iterations, r.cpu_s,
-                        1e3 * last.reference_n, 1e3 * last.force_n));
+                        1e3 * last.reference_n, 1e3 * last.force_n,
+                        r.stopped.empty() ? "" : "; stopped ", r.stopped));
     }
+    study.reference.resize(study.place.size());
     return study;
 }
 

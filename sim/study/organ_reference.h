@@ -28,6 +28,9 @@ struct OrganReferenceOptions {
     HoldSide hold;
     int places = 10;
     std::uint64_t seed = 1;
+    tissue::Tier tier = tissue::Tier::corotated; // of ours
+    std::string model;                           // the organ's mesh for ours; empty: the same
+    std::filesystem::path record{};              // of the reference's presses; empty: none
     ReferencePressOptions press{.depth_m = {}};
 };
 
@@ -56,7 +59,8 @@ struct OrganReference {
     std::vector<ReferenceRow> row{}; // place by place, depths ascending
 };
 
-/// `say` gets a line for each place. Throws as make_body() and press_reference() do.
+/// Places are those of the corotated tier's mesh of `organ`, whatever ours is. `say` gets a line
+/// for each place. Throws as make_body() and press_reference() do.
 OrganReference run_organ_reference(const OrganReferenceOptions& options,
                                    const std::function<void(const std::string&)>& say);
 

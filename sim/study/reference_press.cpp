@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
@@ -30,6 +31,14 @@ std::vector<std::uint8_t> held_flags(const tissue::QuadraticMesh& mesh,
         }
     }
     return held;
+}
+
+std::string why_stopped(const tissue::PressReport& report) {
+    const tissue::NewtonReport& n = report.failed;
+    return fmt::format("at {:.2f} mm: residual {:.0e} after {} solves, tangent indefinite in {}, "
+                       "least det F {:.2f}",
+                       1e3 * report.failed_at_m, n.relative_residual, n.iterations, n.projected,
+                       n.min_det_f);
 }
 
 } // namespace
@@ -75,6 +84,8 @@ ReferencePress press_reference(const tissue::BakedOrgan& organ, const tissue::Ma
                        .nodes = static_cast<int>(mesh.rest_m.size()),
                        .tets = static_cast<int>(mesh.tets.size()),
                        .iterations = report.iterations};
+    if (report.failed_at_m > 0.0)
+        out.stopped = why_stopped(report);
     for (const tissue::PressPoint& p : report.point) {
         out.force_n.push_back(p.force_n);
         out.penetration_m = std::max(out.penetration_m, p.penetration_m);

@@ -25,6 +25,7 @@ struct ReferencePress {
     double least_det_f = 1.0;          // at the last depth
     int nodes = 0, tets = 0, iterations = 0;
     double cpu_s = 0.0;
+    std::string stopped{}; // where and why, if not at the last depth
 };
 
 /// Along `into` (unit) through the point of the body's facets nearest to `place_m`; depth 0 is

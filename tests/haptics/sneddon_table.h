@@ -58,6 +58,13 @@ inline haptics::IndenterTable sneddon_table(const SneddonSphere& sphere, double 
             t.depth_over_x_m[level][i] = i == 0 ? 0.0 : depth_m / x;
             t.contact_radius_m[level][i] = sphere.radius_m * std::tanh(s);
         }
+        // far in, as far as the table goes
+        const int last = haptics::IndenterTable::kEntries - 1;
+        const double x = last * x_step;
+        const double rise =
+            (t.depth_over_x_m[level][last] - t.depth_over_x_m[level][last - 1]) / x_step;
+        t.punch_mpn[level] =
+            (t.depth_over_x_m[level][last] + x * rise) / (3.0 * t.force_scale_n * x * x);
     }
     return t;
 }

@@ -101,6 +101,8 @@ PressReport press(const ReferenceModel& model, const Press& p, ReferenceSystem& 
         const NewtonReport newton = find_least(model, potential, {}, p.newton, system, moved);
         report.iterations += newton.iterations;
         if (!(newton.reached == 1.0)) {
+            report.failed_at_m = depth_m;
+            report.failed = newton;
             step_m *= 0.5;
             continue;
         }
@@ -108,6 +110,7 @@ PressReport press(const ReferenceModel& model, const Press& p, ReferenceSystem& 
         last_step_m = taken_m;
         step_m = std::min(greatest_m, 2.0 * step_m);
         report.reached_m = depth_m;
+        report.failed_at_m = 0.0;
         PressPoint point = measured(model, now, contact);
         point.depth_m = depth_m;
         point.min_det_f = newton.min_det_f;
