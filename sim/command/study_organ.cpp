@@ -57,11 +57,15 @@ void beside_reference(OrganArguments& a, bool depths_given) {
         o.record = a.record;
     else if (!a.out.empty())
         o.record = std::filesystem::path(a.out) / "reference.presses";
-    const OrganReference study =
-        run_organ_reference(o, [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
+    const auto keep = [&](const OrganReference& study) {
+        for (const auto& [name, text] : organ_reference_files(o, study)) {
+            if (!a.out.empty())
+                write_text(std::filesystem::path(a.out) / name, text);
+        }
+    };
+    const OrganReference study = run_organ_reference(
+        o, [](const std::string& line) { fmt::print(stderr, "{}\n", line); }, keep);
     for (const auto& [name, text] : organ_reference_files(o, study)) {
-        if (!a.out.empty())
-            write_text(std::filesystem::path(a.out) / name, text);
         if (name == "reference.json")
             fmt::print("{}", text);
     }

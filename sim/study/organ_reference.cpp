@@ -96,7 +96,8 @@ std::string record_key(const OrganReferenceOptions& o, const tissue::BakedOrgan&
 } // namespace
 
 OrganReference run_organ_reference(const OrganReferenceOptions& o,
-                                   const std::function<void(const std::string&)>& say) {
+                                   const std::function<void(const std::string&)>& say,
+                                   const std::function<void(const OrganReference&)>& keep) {
     if (o.press.depth_m.empty() || o.places < 1)
         throw std::invalid_argument("organ reference: want at least one depth and one place");
     const OrganPointer organ = held_organ(load_organ(o.organ), o.hold);
@@ -111,21 +112,22 @@ OrganReference run_organ_reference(const OrganReferenceOptions& o,
     OrganReference study{.nodes = static_cast<int>(model->mesh.rest_m.size()),
                          .tets = static_cast<int>(model->mesh.tets.size())};
     const std::string key = record_key(o, *organ);
-    study.reference = read_presses(o.record, key);
+    std::vector<ReferencePress> pressed = read_presses(o.record, key);
     for (const dvec3& place : random_places(usual.body(), o.places, o.seed)) {
         const int i = static_cast<int>(study.place.size());
         study.place.push_back(indenter.press(place, o.press.depth_m));
-        if (i == static_cast<int>(study.reference.size())) {
+        if (i == static_cast<int>(pressed.size())) {
             const IndentPoint p = usual.press(place, {});
-            study.reference.push_back(
+            pressed.push_back(
                 press_reference(*organ, o.material, p.place_m, -p.normal, o.press,
                                 [&](double depth_m, double force_n) {
                                     say(fmt::format("place {:>2}: {:5.2f} mm, {:4.0f} mN", i + 1,
                                                     1e3 * depth_m, 1e3 * force_n));
                                 }));
             if (!o.record.empty())
-                write_presses(o.record, key, study.reference);
+                write_presses(o.record, key, pressed);
         }
+        study.reference.push_back(pressed[i]);
         add_rows(o, i, study);
         const ReferencePress& r = study.reference.back();
         const ReferenceRow last = study.row[study.row.size() - o.press.depth_m.size() +
@@ -135,8 +137,9 @@ OrganReference run_organ_reference(const OrganReferenceOptions& o,
                         i + 1, o.places, 1e3 * r.reached_m, r.nodes, r.iterations, r.cpu_s,
                         1e3 * last.reference_n, 1e3 * last.force_n,
                         r.stopped.empty() ? "" : "; stopped ", r.stopped));
+        if (keep)
+            keep(study);
     }
-    study.reference.resize(study.place.size());
     return study;
 }
 

@@ -61,8 +61,10 @@ struct OrganReference {
 
 /// Places are those of the corotated tier's mesh of `organ`, whatever ours is. `say` gets a line
 /// for each place. Throws as make_body() and press_reference() do.
+/// `keep` (may be empty) gets the study after each place.
 OrganReference run_organ_reference(const OrganReferenceOptions& options,
-                                   const std::function<void(const std::string&)>& say);
+                                   const std::function<void(const std::string&)>& say,
+                                   const std::function<void(const OrganReference&)>& keep = {});
 
 /// Over the rows that were solved.
 struct ReferenceSummary {

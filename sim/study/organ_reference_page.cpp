@@ -18,11 +18,13 @@ constexpr const char* kOurs = "#d55e00"; // apart for the colour-blind (Okabe, I
 constexpr const char* kReference = "#0072b2";
 
 std::string what(const OrganReferenceOptions& o, const OrganReference& study) {
-    return fmt::format("{} ({} nodes, {} tets), E {} kPa, nu {}, tip radius {} mm, friction {}, "
-                       "places seed {}",
-                       std::filesystem::path(o.organ).stem().string(), study.nodes, study.tets,
-                       1e-3 * o.material.young_pa, o.material.poisson, 1e3 * o.press.radius_m,
-                       o.press.friction, o.seed);
+    const std::string mesh =
+        o.model.empty() ? "" : " on " + std::filesystem::path(o.model).stem().string();
+    return fmt::format("{}{} ({}, {} nodes, {} tets), E {} kPa, nu {}, tip radius {} mm, friction "
+                       "{}, places seed {}",
+                       std::filesystem::path(o.organ).stem().string(), mesh,
+                       tissue::name_of(o.tier), study.nodes, study.tets, 1e-3 * o.material.young_pa,
+                       o.material.poisson, 1e3 * o.press.radius_m, o.press.friction, o.seed);
 }
 
 std::string csv(const OrganReferenceOptions& o, const OrganReference& study) {
@@ -195,6 +197,11 @@ std::string page(const OrganReferenceOptions& o, const OrganReference& study) {
                         "|\n",
                         i + 1, 1e3 * study.reference[i].reached_m, 1e3 * p.worst_n, p.worst_percent,
                         p.worst_stiffness_percent, p.worst_deg, p.a1, p.a2, p.a3, p.solved);
+    }
+    for (std::size_t i = 0; i < study.place.size(); ++i) {
+        if (!study.reference[i].stopped.empty())
+            out += fmt::format("\nPlace {}: the reference stopped {}.\n", i + 1,
+                               study.reference[i].stopped);
     }
     if (s.solved < s.rows) {
         out += fmt::format("\n**Gap: the reference found no equilibrium at {} of {} depths; {} of "

@@ -74,6 +74,33 @@ TEST_CASE("contact law: depth and slope go on smoothly beyond the table") {
     CHECK(out.dforce_dx / out.ddepth_dx == doctest::Approx(stiffness).scale(0.0).epsilon(0.02));
 }
 
+TEST_CASE("contact law: tissue that stiffens below the floor goes on along it, without a kink") {
+    // a table whose slope falls to two thirds of a punch, and so below a floor that the punch meets
+    haptics::IndenterTable stiffening_table = table();
+    for (double& punch : stiffening_table.punch_mpn)
+        punch *= 1.5;
+    const LocalLaw law{.table = &stiffening_table, .normal_mpn = -1.0, .floor_mpn = 1.25e-3};
+    const auto slope_mpn = [&](double x) {
+        const LawPoint p = law_at(law, x);
+        return p.ddepth_dx / p.dforce_dx;
+    };
+    const double step = 0.01 * table().x_step;
+    LawPoint last = law_at(law, table().x_step);
+    for (double x = table().x_step + step; x < 1.5 * last_x(); x += step) {
+        const LawPoint p = law_at(law, x);
+        CHECK(p.depth_m - last.depth_m >= 0.98 * law.floor_mpn * (p.force_n - last.force_n));
+        // no jump: the depth won is what the slope says
+        CHECK(p.depth_m - last.depth_m <= 1.05 * p.ddepth_dx * step + 1e-12);
+        last = p;
+    }
+    CHECK(slope_mpn(last_x()) == doctest::Approx(law.floor_mpn).scale(0.0).epsilon(1e-9));
+    // and where the punch is as soft as that it is left alone
+    const LocalLaw plain{.table = &stiffening_table, .normal_mpn = 1.0, .floor_mpn = 1.25e-3};
+    const double x = 0.9 * last_x();
+    CHECK(law_at(plain, x).depth_m - 1.0 * law_at(plain, x).force_n ==
+          doctest::Approx(law_at({.table = &table()}, x).depth_m).scale(0.0).epsilon(1e-6));
+}
+
 TEST_CASE("contact law: levels are met exactly and mixed linearly in depth between") {
     const double x = 20.0 * table().x_step;
     const double thick_m = law_at({.table = &table()}, x).depth_m;

@@ -3,9 +3,16 @@
 // told.
 #include "sim/study/organ_reference.h"
 #include "sim/study/organ_study.h"
+#include "sim/study/reference_record.h"
 
 #include <doctest/doctest.h>
+#include <filesystem>
+#include <fstream>
 #include <glm/geometric.hpp>
+#include <limits>
+#include <unistd.h>
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -99,4 +106,39 @@ TEST_CASE("organ reference: what cannot be pressed is refused with the value") {
     o = block();
     o.press.depth_m = {};
     CHECK_THROWS_WITH(sim::run_organ_reference(o, {}), doctest::Contains("at least one depth"));
+}
+
+TEST_CASE("organ reference: what was pressed is kept to the last bit, and is no other study's") {
+    const fs::path file =
+        fs::temp_directory_path() / ("trocar_presses_" + std::to_string(getpid()) + ".txt");
+    const std::vector<sim::ReferencePress> presses{
+        {.force_n = {{0.1, -0.2, 1.0 / 3.0}, {0, 0, 2.0 / 3.0}},
+         .reached_m = 2e-3,
+         .nodes = 7,
+         .cpu_s = 1.5},
+        {.force_n = {}, .reached_m = 0.0, .stopped = "at 0.10 mm: residual 1e-02"}};
+    write_presses(file, "# one", presses);
+    const auto read = sim::read_presses(file, "# one");
+    REQUIRE(read.size() == 2);
+    CHECK(read[0].force_n == presses[0].force_n);
+    CHECK(read[0].reached_m == presses[0].reached_m);
+    CHECK(read[0].nodes == 7);
+    CHECK(read[0].stopped.empty());
+    CHECK(read[1].stopped == presses[1].stopped);
+    CHECK(sim::read_presses(file, "# two").empty());
+    CHECK(sim::read_presses(file.string() + ".none", "# one").empty());
+    std::ofstream(file, std::ios::app) << "0.1 0 cut off";
+    CHECK_THROWS_WITH(sim::read_presses(file, "# one"),
+                      doctest::Contains("press 3 cannot be read"));
+    fs::remove(file);
+}
+
+TEST_CASE("organ reference: deep and stuck, on a block of 256 nodes, the law is inside A1") {
+    // 2.4 tip radii; small strain is 4 % softer there
+    auto o = block();
+    o.press.friction = std::numeric_limits<double>::infinity();
+    o.press.depth_m = {6e-3};
+    const auto study = sim::run_organ_reference(o, [](const std::string&) {});
+    REQUIRE(summary_of(o, study).solved == 1);
+    CHECK(std::abs(study.row[0].error_percent) < 7.0);
 }
