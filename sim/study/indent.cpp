@@ -11,6 +11,8 @@
 namespace sim {
 namespace {
 
+constexpr double kStep_s = 0.02; // a quadratic body wants one; statics do not depend on it
+
 bool anchored_below(const Body& body, const tissue::Triangle& corners) {
     const tissue::ContactSurface& skin = body.organ->surface;
     for (const std::uint32_t v : corners) {
@@ -26,9 +28,10 @@ bool anchored_below(const Body& body, const tissue::Triangle& corners) {
 
 Indenter::Indenter(std::shared_ptr<const tissue::BakedOrgan> organ,
                    const tissue::Material& material, double tip_radius_m, tissue::Tier tier)
-    : body_(make_body(std::move(organ), material,
-                      TipRadii{tip_radius_m, tip_radius_m, tip_radius_m},
-                      std::numeric_limits<double>::infinity(), tier)),
+    : body_(make_body(
+          std::move(organ), material, TipRadii{tip_radius_m, tip_radius_m, tip_radius_m},
+          tier == tissue::Tier::quadratic ? kStep_s : std::numeric_limits<double>::infinity(),
+          tier)),
       feel_(body_), radius_m_(tip_radius_m) {
     if (!body_.soft)
         throw std::invalid_argument("a rigid organ cannot be indented");
