@@ -19,7 +19,7 @@ constexpr const char* kReference = "#0072b2";
 
 std::string what(const OrganReferenceOptions& o, const OrganReference& study) {
     const std::string mesh =
-        o.model.empty() ? "" : " on " + std::filesystem::path(o.model).stem().string();
+        o.model.empty() ? "" : " on " + std::filesystem::path(o.model).filename().string();
     return fmt::format("{}{} ({}, {} nodes, {} tets), E {} kPa, nu {}, tip radius {} mm, friction "
                        "{}, places seed {}",
                        std::filesystem::path(o.organ).stem().string(), mesh,
