@@ -12,9 +12,9 @@
 // low, of 2 radii 4, 10, 17 % (small strain: 4, 8, 13 and 4, 10, 18 %; nu 0.45).
 //
 // Stuck, because with little friction a neo-Hookean half-space has no equilibrium beyond 2 to 5
-// radii (friction 0: 1.8, 0.1: 2.7, 0.3: 5.2): the skin at the pole stretches without end. As far
-// as it has one, friction 0.1 takes 5 % off the force at 1.75 radii and 12 % at 2.5, none at all
-// takes 10 % off at 1.75.
+// radii (friction 0: 1.8, 0.1: 2.7, 0.3: 5.2): the tangent becomes indefinite and energy falls on,
+// as if the skin at the pole stretched without end. As far as it has one, friction 0.1 takes 5 %
+// off the force at 1.75 radii and 12 % at 2.5, none at all takes 10 % off at 1.75.
 #pragma once
 
 #include "tissue/response/subgrid.h"
