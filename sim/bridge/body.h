@@ -21,12 +21,12 @@ struct SoftBody {
     tissue::Solid solid;
     tissue::ContactBasis basis;
     tissue::SkinFrames skin_frame;
-    std::vector<double> shape_by_unknown; // the basis, one line of modes per unknown
-    std::vector<double> motion_m;         // du of the step being made
-    std::vector<double> rows;             // of the contact, 3 columns for each tool
-    std::vector<double> answer_m;         // A^-1 of them
-    std::vector<double> load_n;           // contact forces of the step being made
-    std::vector<double> drift_m;          // since it last was not still
+    std::vector<double> shape_by_unknown{}; // the basis, one line of modes per unknown
+    std::vector<double> motion_m{};         // du of the step being made
+    std::vector<double> rows{};             // of the contact, 3 columns for each tool
+    std::vector<double> answer_m{};         // A^-1 of them
+    std::vector<double> load_n{};           // contact forces of the step being made
+    std::vector<double> drift_m{};          // since it last was not still
     std::array<haptics::SurfacePoint, haptics::kTools> answer_at{}; // where the rows are
     std::size_t answers = 0;                                        // tools with rows
     int answers_of = -1;                                            // the linearisation

@@ -55,14 +55,10 @@ sim::SoftBody some_tissue() {
     const tissue::TetMesh mesh{{{0, 0, 0}, {1e-2, 0, 0}, {0, 1e-2, 0}, {0, 0, 1e-2}},
                                {{0, 1, 2, 3}}};
     const std::array<std::uint8_t, 4> anchored{1, 0, 0, 0};
-    return {tissue::make_solid(tissue::Tier::corotated, {mesh, anchored, {}}, {}, dvec3{0.0}, 1e-2),
-            {},
-            {},
-            {},
-            {},
-            {},
-            {},
-            {}};
+    return {.solid = tissue::make_solid(tissue::Tier::corotated, {mesh, anchored, {}}, {},
+                                        dvec3{0.0}, 1e-2),
+            .basis = {},
+            .skin_frame = {}};
 }
 
 sim::Body body_of(std::vector<dvec3> vertex_m, std::vector<tissue::Triangle> triangles,
