@@ -20,9 +20,9 @@ void add_study(CLI::App& app, int& exit_code);
 void add_failures_study(CLI::App& study, int& exit_code); // a study
 void add_scaling_study(CLI::App& study, int& exit_code);  // a study
 void add_complexity_study(CLI::App& study);
-void add_solid_studies(CLI::App& study, int& exit_code);  // beam, block, cook
-void add_solid_charts(CLI::App& study);                   // locking, large, tradeoff
-void add_study_contact(CLI::App& study);                  // one of its charts, in a file of its own
+void add_solid_studies(CLI::App& study, int& exit_code); // beam, block, cook
+void add_solid_charts(CLI::App& study);                  // locking, large, tradeoff
+void add_study_contact(CLI::App& study);                 // one of its charts, in a file of its own
 void add_why_study(CLI::App& study);
 void add_study_indenter(CLI::App& study);
 void add_study_organ(CLI::App& study);
