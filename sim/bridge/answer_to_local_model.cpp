@@ -90,6 +90,7 @@ void compute_basis(Body& body, std::span<const tissue::BasisContact> contacts) n
         tissue::follow_contact_basis(quadratic->model, quadratic->state, quadratic->system,
                                      soft.basis);
         tissue::turn_shapes(soft.basis, tissue::unknowns(soft.solid), soft.shape_by_unknown);
+        ++soft.basis_count;
         soft.basis_of = soft.linearisations;
         return;
     }
@@ -101,6 +102,7 @@ void compute_basis(Body& body, std::span<const tissue::BasisContact> contacts) n
         },
         soft.solid);
     tissue::turn_shapes(soft.basis, tissue::unknowns(soft.solid), soft.shape_by_unknown);
+    ++soft.basis_count;
     soft.basis_of = soft.linearisations;
     soft.basis_contacts = contacts.size();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -127,9 +129,27 @@ int add_modes(Body& body, std::span<const tissue::BasisContact> contacts,
     return first;
 }
 
+void fill_shapes(const Body& body, const tissue::Patch& patch, int body_index, ShownShapes& shown,
+                 haptics::ToolPatch& out) noexcept {
+    const SoftBody& soft = *body.soft;
+    const bool as_before =
+        shown.body == body_index && shown.basis == soft.basis_count && shown.vertex == patch.vertex;
+    if (!as_before) {
+        for (std::size_t v = 0; v < patch.vertex.size(); ++v) {
+            auto& shape = shown.shape[v];
+            tissue::vertex_shapes(tissue::dofs(soft.solid), body.organ->surface, patch.vertex[v],
+                                  soft.shape_by_unknown, soft.basis.modes,
+                                  {shape[0].data(), shape[1].data(), shape[2].data()});
+        }
+        shown.body = body_index;
+        shown.basis = soft.basis_count;
+        shown.vertex.assign(patch.vertex.begin(), patch.vertex.end());
+    }
+    std::copy_n(shown.shape.begin(), patch.vertex.size(), out.shape.begin());
+}
+
 void fill_patch(const Body& body, const tissue::Patch& patch, int tool,
                 haptics::ToolPatch& out) noexcept {
-    const tissue::ContactSurface& skin = body.organ->surface;
     out.vertices = static_cast<int>(patch.vertex.size());
     out.triangles = static_cast<int>(patch.triangle.size());
     for (int v = 0; v < out.vertices; ++v) {
@@ -143,15 +163,6 @@ void fill_patch(const Body& body, const tissue::Patch& patch, int tool,
     for (int t = 0; t < out.triangles; ++t) {
         out.triangle[t] = {
             .vertex = patch.corner[t], .neighbour = patch.neighbour[t], .id = patch.triangle[t]};
-    }
-    if (!body.soft)
-        return;
-    const SoftBody& soft = *body.soft;
-    for (int v = 0; v < out.vertices; ++v) {
-        tissue::vertex_shapes(
-            tissue::dofs(soft.solid), skin, patch.vertex[v], soft.shape_by_unknown,
-            soft.basis.modes,
-            {out.shape[v][0].data(), out.shape[v][1].data(), out.shape[v][2].data()});
     }
 }
 
@@ -176,6 +187,8 @@ void fill_tool(TissueRig& rig, int tool, haptics::ToolPatch& out) noexcept {
                          static_cast<std::uint32_t>(contact.at.triangle),
                          rig.config.patch_radius_m + contact.speed_mps * span_s, patch);
     fill_patch(body, patch, tool, out);
+    if (body.soft)
+        fill_shapes(body, patch, contact.body, rig.shown[tool], out);
     out.contact = {patch.triangle_local[contact.at.triangle], contact.at.weight};
     out.memory = rig.memory[tool];
 }

@@ -33,6 +33,7 @@ struct SoftBody {
     int answers_age = 0;                                            // steps since
     int linearisations = 0;     // counts them, so that what rests on one knows when it is old
     double basis_drift_m = 0.0; // how far anything moved since its space was solved for
+    int basis_count = 0;        // counts bases, so that what rests on one knows when it is old
     int basis_of = -1;          // the linearisation and places that the basis was made for
     std::array<glm::dvec3, haptics::kTools> basis_rest_m{};
     std::array<bool, haptics::kTools> basis_held{};

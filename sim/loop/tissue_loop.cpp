@@ -199,6 +199,10 @@ TissueRig make_tissue_rig(std::vector<Body> bodies, const TissueConfig& config) 
             patch = tissue::make_patch(largest->organ->surface, haptics::kMaxPatchVertices,
                                        haptics::kMaxPatchTriangles);
         }
+        for (ShownShapes& shown : rig.shown) {
+            shown.vertex.reserve(haptics::kMaxPatchVertices);
+            shown.shape.resize(haptics::kMaxPatchVertices);
+        }
     }
     return rig;
 }

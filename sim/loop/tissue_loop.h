@@ -46,6 +46,13 @@ struct TissueConfig {
     std::vector<tissue::Tier> tier; // by organ; empty: corotated
 };
 
+/// What the patch of a tool showed of the modes in the step before.
+struct ShownShapes {
+    int body = -1, basis = -1; // SoftBody::basis_count
+    std::vector<std::uint32_t> vertex;
+    std::vector<std::array<std::array<double, haptics::kMaxModes>, 3>> shape;
+};
+
 struct TissueRig {
     TissueConfig config;
     std::vector<Body> bodies;
@@ -57,6 +64,7 @@ struct TissueRig {
     std::array<double, kTools> device_npm{800.0, 800.0, 800.0}; // 0.8 x 2b/T of each device
     std::array<double, kTools> floor_mpn{};                     // 1/Kc at the tip, see below
     std::array<tissue::Patch, kTools> patch;
+    std::array<ShownShapes, kTools> shown;
     std::int64_t next_step = 0;
     std::int64_t last_sample_tick = -1;
 };

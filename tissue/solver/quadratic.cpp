@@ -45,6 +45,8 @@ void add_inertia(const QuadraticModel& model, QuadraticSystem& s) noexcept {
         s.way[i] = s.moved_m[i] - s.start_m[i];
     const double mass = 1.0 / (s.dt_s * s.dt_s) + model.material.damping_mass_1ps / s.dt_s;
     mass_product(model, mass, s.way, s.inertia_n);
+    s.last_way = s.way;
+    s.last_inertia_n = s.inertia_n;
     if (!(model.material.damping_stiffness_s > 0.0))
         return;
     std::copy(s.way.begin(), s.way.end(), s.p.begin());
@@ -64,6 +66,7 @@ void add_inertia(const QuadraticModel& model, QuadraticSystem& s) noexcept {
 void evaluate(const QuadraticModel& model, QuadraticSystem& s) noexcept {
     const PointSums sums =
         stresses(model, s.moved_m, s.shear_pa, s.internal_n, s.tangent, s.stretch);
+    s.tangent_true = true;
     s.min_det_f = sums.min_det_f;
     s.energy_j = sums.min_det_f > 0.0 ? sums.energy_j : kInfinity;
     const double bed_j = add_bed(model, s.moved_m, s.inertia_n, s.internal_n);
@@ -125,6 +128,15 @@ void set_load(const QuadraticModel& model, std::span<const double> load_n,
     }
 }
 
+// Of places in metres: the same but for rounding.
+bool same(const NodeVector<double>& a, const NodeVector<double>& b, double scale) noexcept {
+    constexpr double kRounding_m = 1e-15;
+    std::size_t near = 0; // what is not a number is not
+    for (std::size_t i = 0; i < a.size(); ++i)
+        near += std::abs(scale * a[i] - b[i]) <= kRounding_m;
+    return near == a.size();
+}
+
 // f + M v/dt
 void add_momentum(const QuadraticModel& model, const QuadraticState& state,
                   std::span<const double> load_n, QuadraticSystem& s) noexcept {
@@ -132,7 +144,14 @@ void add_momentum(const QuadraticModel& model, const QuadraticState& state,
         for (int c = 0; c < 3; ++c)
             s.way[4 * i + c] = state.velocity_mps[i][c];
     }
-    mass_product(model, 1.0 / s.dt_s, s.way, s.momentum_n);
+    // mostly the way of the step before, whose inertia is known
+    if (same(s.way, s.last_way, s.dt_s)) {
+        const double share = 1.0 / (1.0 + model.material.damping_mass_1ps * s.dt_s);
+        for (std::size_t i = 0; i < s.momentum_n.size(); ++i)
+            s.momentum_n[i] = share * s.last_inertia_n[i];
+    } else {
+        mass_product(model, 1.0 / s.dt_s, s.way, s.momentum_n);
+    }
     for (std::size_t i = 0; i < s.momentum_n.size(); ++i)
         s.momentum_n[i] += model.weight_n[i];
     std::fill(s.load_n.begin(), s.load_n.end(), 0.0);
@@ -144,6 +163,7 @@ void add_momentum(const QuadraticModel& model, const QuadraticState& state,
 // in far fewer iterations if the stress of the geometric stiffness is not taken from it (Magisano,
 // Leonetti & Garcea 2017).
 void keep_stress(QuadraticSystem& s) noexcept {
+    s.tangent_true = false;
     for (std::size_t g = 0; g < s.tangent.elastic.size(); ++g) {
         for (std::size_t q = 0; q < 4; ++q) {
             s.tangent.elastic[g].point[q][QuadraticTangent::kBend] =
@@ -208,6 +228,27 @@ void read_motion(const QuadraticModel& model, const QuadraticSystem& s,
     }
 }
 
+struct Start {
+    double min_det_f = 0.0, energy_j = 0.0, shape_j = 0.0;
+};
+
+// The tangent at start_m into tangent_at_start. Mostly that is where the step before ended, and its
+// tangent is there; with a memory it is another by now.
+Start start_of(const QuadraticModel& model, const QuadraticState& state,
+               QuadraticSystem& s) noexcept {
+    begin_memory(model, state, s);
+    if (s.tangent_true && s.min_det_f > 0.0 && s.prony.terms == 0 &&
+        same(s.moved_m, s.start_m, 1.0)) {
+        std::swap(s.tangent, s.tangent_at_start);
+        s.tangent_true = false;
+        return {s.min_det_f, s.energy_j, s.shape_j};
+    }
+    const PointSums sums =
+        stresses(model, s.start_m, s.shear_pa, s.internal_n, s.tangent_at_start, s.stretch);
+    const double bed_j = add_bed(model, s.start_m, s.inertia_n, s.internal_n);
+    return {sums.min_det_f, sums.energy_j + bed_j, sums.shape_j + bed_j};
+}
+
 } // namespace
 
 void linearize(const QuadraticModel& model, const QuadraticState& state, QuadraticSystem& s,
@@ -216,16 +257,14 @@ void linearize(const QuadraticModel& model, const QuadraticState& state, Quadrat
         for (int c = 0; c < 3; ++c)
             s.start_m[4 * i + c] = state.position_m[i][c] - model.mesh.rest_m[i][c];
     }
-    s.moved_m = s.start_m;
     add_momentum(model, state, load_n, s);
-    begin_memory(model, state, s);
-    const PointSums start =
-        stresses(model, s.start_m, s.shear_pa, s.internal_n, s.tangent_at_start, s.stretch);
-    const double bed_j = add_bed(model, s.start_m, s.inertia_n, s.internal_n);
+    const Start start = start_of(model, state, s);
+    s.moved_m = s.start_m;
     s.min_det_f = start.min_det_f;
-    s.energy_j = start.energy_j + bed_j;
+    s.energy_j = start.energy_j;
     s.recovering = !(start.min_det_f > 0.0);
     if (s.recovering) {
+        s.tangent_true = false;
         linearize_recovering(model, s);
         return;
     }
@@ -234,7 +273,7 @@ void linearize(const QuadraticModel& model, const QuadraticState& state, Quadrat
     constexpr double kFlat = 0.5;
     const auto better = [&] {
         return s.min_det_f >= kFlat * start.min_det_f &&
-               s.potential_j - s.energy_j + s.shape_j <= start.shape_j + bed_j;
+               s.potential_j - s.energy_j + s.shape_j <= start.shape_j;
     };
     look_ahead(model, state, 1.0, s);
     if (!better())

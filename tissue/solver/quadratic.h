@@ -150,8 +150,10 @@ struct QuadraticSystem {
     std::vector<QuadraticStretch> stretch{};
     std::vector<glm::mat3> warp{}; // of each node: mean F around it, of volume 1
     NodeVector<double> start_m{}, moved_m{}, trial_m{}; // displacements from rest
-    NodeVector<double> momentum_n{};                    // M v/dt + weight + load
-    std::vector<double> load_n{};                       // of these, on the unknowns
+    bool tangent_true = false; // `tangent` is that of moved_m, nothing kept or scaled since
+    NodeVector<double> last_way{}, last_inertia_n{}; // moved_m - start_m, B of it without stiffness
+    NodeVector<double> momentum_n{};                 // M v/dt + weight + load
+    std::vector<double> load_n{};                    // of these, on the unknowns
     NodeVector<double> internal_n{}, inertia_n{}, residual_n{}, way{}, damped_n{};
     NodeVector<float> b{}, x{}, r{}, z{}, p{}, q{};
     std::vector<float>

@@ -64,6 +64,7 @@ void multiply(const QuadraticModel& model, QuadraticSystem& s) noexcept {
 // mixed^2 = 4/9 shear^2/J^2 <= shear square/|F|^2, since square >= 5/9 shear |F|^2/J^2. With a
 // memory the same in the metric of M, which is positive.
 void scale_geometric_stiffness(float share, QuadraticSystem& s) noexcept {
+    s.tangent_true = false;
     for (QuadraticTangent& tangent : s.tangent.elastic) {
         for (auto& point : tangent.point) {
             for (float& bend : point[QuadraticTangent::kBend])

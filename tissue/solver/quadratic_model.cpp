@@ -195,8 +195,7 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s) {
     if (!(dt_s > 0.0) || !std::isfinite(dt_s))
         throw std::invalid_argument("dt_s = " + std::to_string(dt_s) +
                                     ": must be finite and greater than 0");
-    QuadraticSystem s{
-        .dt_s = dt_s, .exact = SparseFactor(model.pattern)};
+    QuadraticSystem s{.dt_s = dt_s, .exact = SparseFactor(model.pattern)};
     const double mass = 1.0 / (dt_s * dt_s) + model.material.damping_mass_1ps / dt_s;
     const double stiffness = 1.0 + model.material.damping_stiffness_s / dt_s;
     s.prony = prony_step(model.material, dt_s);
@@ -236,7 +235,7 @@ QuadraticSystem make_system(const QuadraticModel& model, double dt_s) {
     s.warp.assign(nodes, glm::mat3(1.0f));
     s.unwarp = s.warp;
     for (auto* v : {&s.start_m, &s.moved_m, &s.trial_m, &s.momentum_n, &s.internal_n, &s.inertia_n,
-                    &s.residual_n, &s.way, &s.damped_n})
+                    &s.residual_n, &s.way, &s.damped_n, &s.last_way, &s.last_inertia_n})
         v->assign(places, 0.0);
     for (auto* v : {&s.b, &s.x, &s.r, &s.z, &s.p, &s.q})
         v->assign(places, 0.0f);
