@@ -14,9 +14,10 @@ std::vector<tissue::Tier> tiers_of(const std::vector<std::string>& names) {
     std::vector<tissue::Tier> tiers;
     for (const std::string& name : names) {
         const auto tier = tissue::tier_named(name);
-        if (!tier)
-            throw std::invalid_argument(fmt::format("--models {}: accepted: {}", name,
-                                                    fmt::join(tissue::kTierNames, ", ")));
+        if (!tier || *tier == tissue::Tier::rigid)
+            throw std::invalid_argument(
+                fmt::format("--models {}: accepted: {}: nothing rigid steps", name,
+                            fmt::join(std::span(tissue::kTierNames).subspan(1), ", ")));
         tiers.push_back(*tier);
     }
     return tiers;

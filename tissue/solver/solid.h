@@ -103,8 +103,9 @@ SolidReport free_motion(Solid& solid, bool touched, std::span<const double> load
 double solve(Solid& solid, double tolerance, std::span<const double> first, std::span<double> block,
              int columns) noexcept;
 
-/// Moves by `du` and linearises there, or follows the tangent while nothing has drifted farther
-/// than `relinearise_m` since. `load_n`: of the contact, on the unknowns; `du` may be corrected.
+/// Moves by `du`, corrected for the forces there. The tangent stays while nothing has drifted
+/// farther than `relinearise_m`, of corotated bodies while it corrects well (chord.h); 0: never.
+/// `load_n`: of the contact, on the unknowns.
 SolidReport end_step(Solid& solid, std::span<const double> load_n, double relinearise_m,
                      std::span<double> du) noexcept;
 
