@@ -2,6 +2,7 @@
 #include "sim/study/organ_reference.h"
 
 #include "sim/session/rehold.h"
+#include "sim/study/indent.h"
 #include "sim/study/organ_study.h"
 #include "sim/study/reference_record.h"
 
@@ -45,22 +46,29 @@ double percent(double value, double truth) {
     return truth == 0.0 ? 0.0 : 100.0 * (value - truth) / std::abs(truth);
 }
 
+// No force has the direction of any.
+double degrees_between(const dvec3& a, const dvec3& b) {
+    const double lengths = glm::length(a) * glm::length(b);
+    if (!(lengths > 0.0))
+        return 0.0;
+    return std::acos(std::clamp(glm::dot(a, b) / lengths, -1.0, 1.0)) * 180.0 / std::numbers::pi;
+}
+
 // `before`: the row of the depth before, or one of zeros.
-ReferenceRow row_of(const IndentPoint& ours, const ReferencePress& reference, std::size_t d,
+ReferenceRow row_of(const TrainerPress& ours, const ReferencePress& reference, std::size_t d,
                     const ReferenceRow& before, double depth_m) {
-    ReferenceRow r{.depth_m = depth_m, .force_n = ours.force_n[d]};
+    ReferenceRow r{.depth_m = depth_m, .force_n = glm::length(ours.force_n[d])};
     r.stiffness_npm = (r.force_n - before.force_n) / (depth_m - before.depth_m);
     r.solved = d < reference.force_n.size();
     if (!r.solved)
         return r;
     const dvec3 force = reference.force_n[d];
-    r.reference_n = glm::dot(force, ours.normal);
+    r.reference_n = glm::length(force);
     r.error_n = r.force_n - r.reference_n;
     r.error_percent = percent(r.force_n, r.reference_n);
     r.reference_npm = (r.reference_n - before.reference_n) / (depth_m - before.depth_m);
     r.stiffness_percent = percent(r.stiffness_npm, r.reference_npm);
-    r.direction_deg = std::acos(std::clamp(r.reference_n / glm::length(force), -1.0, 1.0)) * 180 /
-                      std::numbers::pi;
+    r.direction_deg = degrees_between(ours.force_n[d], force);
     r.a1 = r.reference_n > kGates.full_force_n ? std::abs(r.error_percent) <= kGates.force_percent
                                                : std::abs(r.error_n) <= kGates.small_force_n;
     r.a2 = std::abs(r.stiffness_percent) <= kGates.stiffness_percent;
@@ -106,24 +114,26 @@ OrganReference run_organ_reference(const OrganReferenceOptions& o,
             fmt::format("tip radius {} mm: '{}' was baked for at most {} mm",
                         1e3 * o.press.radius_m, organ->name, 1e3 * organ->tip_radius_max_m));
     }
-    Indenter usual(organ, o.material, o.press.radius_m);
+    const TrainerTip usual(organ, o.material, o.press.radius_m, o.press.friction,
+                           tissue::Tier::corotated);
     const OrganPointer model = o.model.empty() ? organ : held_organ(load_organ(o.model), o.hold);
-    Indenter indenter(model, o.material, o.press.radius_m, o.tier);
+    TrainerTip tip(model, o.material, o.press.radius_m, o.press.friction, o.tier);
     OrganReference study{.nodes = static_cast<int>(model->mesh.rest_m.size()),
                          .tets = static_cast<int>(model->mesh.tets.size())};
     const std::string key = record_key(o, *organ);
     std::vector<ReferencePress> pressed = read_presses(o.record, key);
     for (const dvec3& place : random_places(usual.body(), o.places, o.seed)) {
         const int i = static_cast<int>(study.place.size());
-        study.place.push_back(indenter.press(place, o.press.depth_m));
+        const Foot foot = nearest_on(usual.body(), place);
+        const dvec3 at_m = place_on(usual.body(), foot.at),
+                    into = -normal_on(usual.body(), foot.at);
+        study.place.push_back(tip.press(at_m, into, o.press.depth_m));
         if (i == static_cast<int>(pressed.size())) {
-            const IndentPoint p = usual.press(place, {});
-            pressed.push_back(
-                press_reference(*organ, o.material, p.place_m, -p.normal, o.press,
-                                [&](double depth_m, double force_n) {
-                                    say(fmt::format("place {:>2}: {:5.2f} mm, {:4.0f} mN", i + 1,
-                                                    1e3 * depth_m, 1e3 * force_n));
-                                }));
+            pressed.push_back(press_reference(
+                *organ, o.material, at_m, into, o.press, [&](double depth_m, double force_n) {
+                    say(fmt::format("place {:>2}: {:5.2f} mm, {:4.0f} mN", i + 1, 1e3 * depth_m,
+                                    1e3 * force_n));
+                }));
             if (!o.record.empty())
                 write_presses(o.record, key, pressed);
         }

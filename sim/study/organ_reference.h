@@ -1,14 +1,14 @@
 // sim/study/organ_reference.h
-// trocar study organ --reference: what a tip of the trainer feels at places of an organ beside what
-// the reference solver says, against the gates for accuracy:
+// trocar study organ --reference: what a tip of the trainer feels at places of an organ, by its own
+// steps, beside what the reference solver says, against the gates for accuracy:
 //   A1 force within 7 % above 0.5 N, 35 mN below
 //   A2 stiffness, between neighbouring depths, within 15 %
 //   A3 direction within 10 degrees
 // Where the reference finds no equilibrium there is a gap, counted apart from what is inside.
 #pragma once
 
-#include "sim/study/indent.h"
 #include "sim/study/reference_press.h"
+#include "sim/study/trainer_press.h"
 
 #include <filesystem>
 
@@ -43,18 +43,18 @@ struct Gates {
 struct ReferenceRow {
     int place = 0;
     double depth_m = 0.0;
-    double force_n = 0.0, reference_n = 0.0; // along the normal
+    double force_n = 0.0, reference_n = 0.0; // lengths
     double error_n = 0.0, error_percent = 0.0;
     double stiffness_npm = 0.0, reference_npm = 0.0,
            stiffness_percent = 0.0; // since the last depth
-    double direction_deg = 0.0;     // of the reference's force from the normal, along which ours is
+    double direction_deg = 0.0;     // between the two forces
     bool solved = false;            // by the reference; else its columns mean nothing
     bool a1 = false, a2 = false, a3 = false;
 };
 
 struct OrganReference {
     int nodes = 0, tets = 0;
-    std::vector<IndentPoint> place{};
+    std::vector<TrainerPress> place{};
     std::vector<ReferencePress> reference{};
     std::vector<ReferenceRow> row{}; // place by place, depths ascending
 };

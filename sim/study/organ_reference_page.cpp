@@ -33,7 +33,7 @@ std::string csv(const OrganReferenceOptions& o, const OrganReference& study) {
         "error_percent,stiffness_npm,reference_stiffness_npm,stiffness_error_percent,"
         "direction_deg,a1,a2,a3,reference_nodes\n";
     for (const ReferenceRow& r : study.row) {
-        const IndentPoint& p = study.place[static_cast<std::size_t>(r.place)];
+        const TrainerPress& p = study.place[static_cast<std::size_t>(r.place)];
         out += fmt::format("{},{:.3f},{:.3f},{:.3f},{:.4f},{:.4f},{:.4f},{:g},{:.6f},", r.place,
                            1e3 * p.place_m.x, 1e3 * p.place_m.y, 1e3 * p.place_m.z, p.normal.x,
                            p.normal.y, p.normal.z, 1e3 * r.depth_m, r.force_n);
@@ -137,8 +137,7 @@ std::string picture(const OrganReferenceOptions& o, const OrganReference& study)
                        kLeft, kLeft + 34, kReference, kOurs);
     out += svg_text(kLeft + 42, 50, "start",
                     "reference: quadratic tetrahedra, neo-Hooke, refined under the tip; band: A1");
-    out += svg_text(kLeft + 42, 70, "start",
-                    "the trainer's law. Force in mN along the normal against depth in mm");
+    out += svg_text(kLeft + 42, 70, "start", "the trainer's step. Force in mN against depth in mm");
     for (int i = 0; i < places; ++i) {
         out +=
             panel_svg(o, study, i,

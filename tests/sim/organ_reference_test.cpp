@@ -29,7 +29,7 @@ sim::OrganReferenceOptions block() {
 // One place, two depths, of which the reference reached the first alone.
 sim::OrganReference halfway() {
     sim::OrganReference study;
-    study.place.push_back({.normal = {0, 0, 1}, .force_n = {0.05, 0.2}});
+    study.place.push_back({.normal = {0, 0, 1}, .force_n = {{0, 0, 0.05}, {0, 0, 0.2}}});
     study.reference.push_back({.force_n = {{0, 0, 0.04}}, .reached_m = 1.5e-3});
     study.row.push_back({.depth_m = 1e-3,
                          .force_n = 0.05,
@@ -74,9 +74,11 @@ TEST_CASE("organ reference: a wrong modulus in the law alone would be seen") {
     o.press.depth_m = {2e-3};
     const auto study = sim::run_organ_reference(o, [](const std::string&) {});
     o.material.young_pa *= 1.5;
-    sim::Indenter stiffer(std::make_shared<const tissue::BakedOrgan>(*sim::load_organ(o.organ)),
-                          o.material, o.press.radius_m);
-    const double force_n = stiffer.press(study.place[0].place_m, o.press.depth_m).force_n[0];
+    sim::TrainerTip stiffer(sim::load_organ(o.organ), o.material, o.press.radius_m,
+                            o.press.friction, o.tier);
+    const auto& at = study.place[0];
+    const double force_n =
+        glm::length(stiffer.press(at.place_m, -at.normal, o.press.depth_m).force_n[0]);
     CHECK(std::abs(force_n / study.row[0].reference_n - 1.0) > 0.4);
 }
 
