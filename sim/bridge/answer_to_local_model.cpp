@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <limits>
+#include <utility>
 
 namespace sim {
 namespace {
@@ -54,31 +56,70 @@ glm::dvec3 rest_place(const Body& body, const tissue::ContactPoint& at) noexcept
            at.weight.z * skin.rest_m[c[2]];
 }
 
-// Modes stay good while the factor is the same and no contact has left the middle of its star.
-bool contacts_are_there(const Body& body, std::span<const tissue::BasisContact> contacts) noexcept {
-    const SoftBody& soft = *body.soft;
-    constexpr double kMiddle = 0.25; // of an arm
-    if (soft.basis_contacts != contacts.size() || soft.basis.modes == 0)
-        return false;
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-        const glm::dvec3 moved = rest_place(body, contacts[i].centre) - soft.basis_rest_m[i];
-        const double middle_m =
-            kMiddle * arm_of_star_m(body, static_cast<int>(contacts[i].centre.triangle));
-        if (!(glm::dot(moved, moved) < middle_m * middle_m) ||
-            contacts[i].held != soft.basis_held[i])
-            return false;
-    }
-    return true;
-}
-
-// How far a quadratic body may move from where the space of its modes was solved for, while its
-// contacts stay: what solves cost is a multiple of the step, and K in the space is that of every
-// step.
+// How far a quadratic body may move from where the columns of its modes were solved for, while
+// their contact stays: what solves cost is a multiple of the step, and K in the space is that of
+// every step.
 constexpr double kBasisDrift_m = 5e-3;
 
-void compute_basis(Body& body, std::span<const tissue::BasisContact> contacts) noexcept {
+// How much the columns of a contact are worn: 1 is where it has left the middle of its star, or
+// the body has drifted so far. None: infinitely.
+double wear(const Body& body, const tissue::BasisContact& contact) noexcept {
+    constexpr double kMiddle = 0.25; // of an arm
+    const SoftBody& soft = *body.soft;
+    const BasisPlace& place = soft.basis_place[contact.slot];
+    if (!place.known || place.held != contact.held)
+        return std::numeric_limits<double>::infinity();
+    const double middle_m =
+        kMiddle * arm_of_star_m(body, static_cast<int>(contact.centre.triangle));
+    const double slid = glm::distance(rest_place(body, contact.centre), place.rest_m) / middle_m;
+    // those of corotated bodies are solved for whenever there is another factor
+    const bool drifts = tissue::tier_of(soft.solid) == tissue::Tier::quadratic;
+    const double drifted = (soft.moved_m - place.moved_m) / kBasisDrift_m;
+    return drifts ? std::max(slid, drifted) : slid;
+}
+
+// Which columns to solve for: one contact's in a step, so that steps are alike, or those that
+// cannot wait (the star serves to three times its middle). Those of somewhere else are of no use.
+// False: all are kept.
+bool choose_columns(const Body& body, std::span<tissue::BasisContact> contacts) noexcept {
+    constexpr double kWorn = 1.0, kWornOut = 3.0, kElsewhere = 12.0;
+    tissue::BasisContact* worst = nullptr;
+    double most = kWorn;
+    bool any = false;
+    for (tissue::BasisContact& contact : contacts) {
+        const double worn = wear(body, contact);
+        contact.kept = tissue::KeptColumns::all;
+        if (worn >= kElsewhere)
+            contact.kept = tissue::KeptColumns::none;
+        else if (worn >= kWornOut)
+            contact.kept = tissue::KeptColumns::about;
+        any |= contact.kept != tissue::KeptColumns::all;
+        if (contact.kept == tissue::KeptColumns::all && worn >= most) {
+            most = worn;
+            worst = &contact;
+        }
+    }
+    if (!any && worst)
+        worst->kept = tissue::KeptColumns::about;
+    return any || worst;
+}
+
+// Forgets tools that have gone. True if there were any.
+bool forget_gone(SoftBody& soft, std::span<const tissue::BasisContact> contacts) noexcept {
+    bool gone = false;
+    for (int slot = 0; slot < kTools; ++slot) {
+        const bool here = std::any_of(contacts.begin(), contacts.end(),
+                                      [&](const auto& c) { return c.slot == slot; });
+        if (!here)
+            gone |= std::exchange(soft.basis_place[slot].known, false);
+    }
+    return gone;
+}
+
+void compute_basis(Body& body, std::span<tissue::BasisContact> contacts) noexcept {
     SoftBody& soft = *body.soft;
-    const bool there = contacts_are_there(body, contacts);
+    const bool gone = forget_gone(soft, contacts);
+    const bool there = !choose_columns(body, contacts) && !gone && soft.basis.modes > 0;
     if (there && soft.basis_of == soft.linearisations) {
         std::visit(
             [&](auto& s) { tissue::refresh_contact_basis(s.model, s.state, s.system, soft.basis); },
@@ -86,33 +127,29 @@ void compute_basis(Body& body, std::span<const tissue::BasisContact> contacts) n
         return;
     }
     auto* quadratic = std::get_if<tissue::QuadraticSolid>(&soft.solid);
-    if (quadratic && there && soft.basis_drift_m < kBasisDrift_m) {
+    if (quadratic && there) {
         tissue::follow_contact_basis(quadratic->model, quadratic->state, quadratic->system,
                                      soft.basis);
-        tissue::turn_shapes(soft.basis, tissue::unknowns(soft.solid), soft.shape_by_unknown);
-        ++soft.basis_count;
-        soft.basis_of = soft.linearisations;
-        return;
+    } else {
+        std::visit(
+            [&](auto& s) {
+                tissue::compute_contact_basis(s.model, body.organ->surface, s.state, s.system,
+                                              contacts, soft.basis);
+            },
+            soft.solid);
+        for (const tissue::BasisContact& contact : contacts) {
+            if (!quadratic || contact.kept != tissue::KeptColumns::all)
+                soft.basis_place[contact.slot] = {true, contact.held,
+                                                  rest_place(body, contact.centre), soft.moved_m};
+        }
     }
-    soft.basis_drift_m = 0.0;
-    std::visit(
-        [&](auto& s) {
-            tissue::compute_contact_basis(s.model, body.organ->surface, s.state, s.system, contacts,
-                                          soft.basis);
-        },
-        soft.solid);
     tissue::turn_shapes(soft.basis, tissue::unknowns(soft.solid), soft.shape_by_unknown);
     ++soft.basis_count;
     soft.basis_of = soft.linearisations;
-    soft.basis_contacts = contacts.size();
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-        soft.basis_rest_m[i] = rest_place(body, contacts[i].centre);
-        soft.basis_held[i] = contacts[i].held;
-    }
 }
 
 // Modes of one body into the common list. Returns where they begin.
-int add_modes(Body& body, std::span<const tissue::BasisContact> contacts,
+int add_modes(Body& body, std::span<tissue::BasisContact> contacts,
               haptics::LocalModels& local) noexcept {
     SoftBody& soft = *body.soft;
     compute_basis(body, contacts);
@@ -207,7 +244,8 @@ void make_local_models(TissueRig& rig, haptics::LocalModels& local) noexcept {
         for (int i = 0; i < kTools; ++i) {
             if (rig.contact[i].body != static_cast<int>(b))
                 continue;
-            contacts[count++] = basis_contact(rig.bodies[b], rig.contact[i], rig.memory[i].grasped);
+            contacts[count] = basis_contact(rig.bodies[b], rig.contact[i], rig.memory[i].grasped);
+            contacts[count++].slot = i;
         }
         if (count == 0)
             continue;

@@ -16,6 +16,13 @@
 
 namespace sim {
 
+/// Where the modes of the local model were last solved for, for one tool.
+struct BasisPlace {
+    bool known = false, held = false;
+    glm::dvec3 rest_m{0.0};
+    double moved_m = 0.0; // SoftBody::moved_m there
+};
+
 /// What deforms. Absent for a rigid body.
 struct SoftBody {
     tissue::Solid solid;
@@ -31,13 +38,11 @@ struct SoftBody {
     std::size_t answers = 0;                                        // tools with rows
     int answers_of = -1;                                            // the linearisation
     int answers_age = 0;                                            // steps since
-    int linearisations = 0;     // counts them, so that what rests on one knows when it is old
-    double basis_drift_m = 0.0; // how far anything moved since its space was solved for
-    int basis_count = 0;        // counts bases, so that what rests on one knows when it is old
-    int basis_of = -1;          // the linearisation and places that the basis was made for
-    std::array<glm::dvec3, haptics::kTools> basis_rest_m{};
-    std::array<bool, haptics::kTools> basis_held{};
-    std::size_t basis_contacts = 0;
+    int linearisations = 0; // counts them, so that what rests on one knows when it is old
+    double moved_m = 0.0;   // how far anything has moved, all in all
+    int basis_count = 0;    // counts bases, so that what rests on one knows when it is old
+    int basis_of = -1;      // the linearisation and places that the basis was made for
+    std::array<BasisPlace, haptics::kTools> basis_place{};
     double still_s = 0.0; // for how long nothing has touched it and nothing has moved
     bool resting = true;  // nothing touches it and nothing moves: steps cost nothing
 };

@@ -122,7 +122,7 @@ void advance_bodies(TissueRig& rig, const haptics::ContactSolution& solution,
         note(report, outcome);
         const double moved_m = largest(soft.motion_m);
         soft.linearisations += report.new_tangent;
-        soft.basis_drift_m += moved_m;
+        soft.moved_m += moved_m;
         tissue::place_surface(body.organ->surface, soft.skin_frame, tissue::position_m(soft.solid),
                               body.skin_m, body.skin_normal);
     }

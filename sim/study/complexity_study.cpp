@@ -76,15 +76,14 @@ std::shared_ptr<const tissue::BakedOrgan> block_of(int nodes, tissue::Tier tier)
     return organ;
 }
 
-// Each tool down and up again once in the run, and round a circle of 5 mm meanwhile, so that its
-// contact point slides. They begin one after the other.
+// Each tool down and up again once in a second, and round a circle of 5 mm meanwhile, so that its
+// contact point slides: at 31 mm/s, however many steps are timed. They begin one after the other.
 ToolsNow tools_at(const ComplexityOptions& o, int step) {
     ToolsNow tools;
     tools.tick = 10 * step;
-    constexpr double kRound_m = 5e-3, kAside_m = 22e-3, kAbove_m = 1e-3;
+    constexpr double kRound_m = 5e-3, kAside_m = 22e-3, kAbove_m = 1e-3, kLap_s = 1.0;
     for (int i = 0; i < kTools; ++i) {
-        const double phase =
-            2.0 * std::numbers::pi * (static_cast<double>(step) / o.steps - 0.1 * i);
+        const double phase = 2.0 * std::numbers::pi * (kStep_s * step / kLap_s - 0.1 * i);
         const double around = 2.0 * std::numbers::pi * i / kTools;
         const glm::dvec3 at{
             0.5 * kSize_m.x + kAside_m * std::cos(around) + kRound_m * std::cos(phase),

@@ -29,13 +29,16 @@ double sneddon_force_n(double depth_m, const tissue::Material& m) {
 
 struct Bench {
     sim::LoadedScene loaded = sim::load_scene("basic");
-    sim::TissueRig rig = sim::make_tissue(loaded, {}, {});
+    sim::TissueRig rig;
     std::unique_ptr<sim::TissueAnswer> answer = std::make_unique<sim::TissueAnswer>();
     sim::ToolsNow tools;
     haptics::SurfacePoint at;
     glm::dvec3 place, normal;
 
-    Bench() {
+    explicit Bench(tissue::Tier tier = tissue::Tier::corotated) {
+        sim::TissueConfig config;
+        config.tier.assign(8, tier);
+        rig = sim::make_tissue(loaded, {}, config);
         // the skin point nearest to the camera
         const sim::Body& liver = rig.bodies[0];
         at = sim::nearest_on(liver, {0.0, 0.0, 0.2}).at;
@@ -173,4 +176,26 @@ TEST_CASE("tissue loop: two tools on one organ share its modes and feel each oth
     CHECK(local.modes > alone.answer->local.modes);
     // the neighbour's dimple takes load off the first tool
     CHECK(glm::length(both.rig.contact[0].force_n) < glm::length(alone.rig.contact[0].force_n));
+}
+
+TEST_CASE(
+    "tissue loop: of tools that slide over quadratic tissue, one in a step gets new columns") {
+    Bench bench(tissue::Tier::quadratic);
+    const glm::dvec3 across = glm::normalize(glm::cross(bench.normal, {1.0, 0.3, 0.2}));
+    const glm::dvec3 along = glm::cross(bench.normal, across);
+    const sim::SoftBody& soft = *bench.rig.bodies[0].soft;
+    std::array<int, 34> steps{}; // by columns solved for
+    for (int step = 0; step < 60; ++step) {
+        for (int tool = 0; tool < sim::kTools; ++tool) {
+            bench.put(tool, 2e-3);
+            bench.tools.tip[tool].centre_m += (0.012 * tool - 0.012) * across + 3e-4 * step * along;
+        }
+        bench.step();
+        ++steps[soft.basis.solved];
+        CHECK(soft.basis.modes == 33);
+    }
+    CHECK(steps[33] == 1); // the first, without any known
+    CHECK(steps[11] > 10);
+    CHECK(steps[0] > 10);
+    CHECK(steps[33] + steps[11] + steps[0] == 60);
 }

@@ -104,6 +104,13 @@ std::vector<double> row(const Scene& s, const tissue::ContactPoint& at, const dv
     return h;
 }
 
+// Moves a contact and its star over the skin.
+void slide(Scene& s, std::size_t i, double x, double y) {
+    const auto at = [&](double dx, double dy) { return bodies::on_top(s.block, x + dx, y + dy); };
+    s.contact[i].centre = at(0, 0);
+    s.contact[i].star = {at(kDelta_m, 0), at(-kDelta_m, 0), at(0, kDelta_m), at(0, -kDelta_m)};
+}
+
 // h^T A^-1 h of the modes over that of the body, in a step of dt.
 double share_of_compliance(Scene& s, const std::vector<double>& h) {
     const double of_m = 1.0 / (kStep_s * kStep_s) + 4.0 / kStep_s, of_k = 1.0 + 3e-3 / kStep_s;
@@ -152,6 +159,48 @@ TEST_CASE("rough columns answer a step's load as the body does, within 1 %, also
             }
         }
     }
+}
+
+TEST_CASE("a contact that moves on is solved for alone, as well as all of them at once") {
+    using tissue::KeptColumns;
+    for (const double strain : {0.0, 0.3}) {
+        Scene s = scene(strain);
+        compute(s, 3);
+        CHECK(s.basis.solved == 33);
+        slide(s, 1, 0.057, 0.040); // 1.4 mm, a third of an arm
+        s.contact[0].kept = s.contact[2].kept = KeptColumns::all;
+        s.contact[1].kept = KeptColumns::about;
+        compute(s, 3);
+        CHECK(s.basis.solved == 11);
+        CHECK(s.basis.modes == 33);
+        check_orthonormal_and_diagonal(s);
+        for (const auto& contact : s.contact) {
+            for (const dvec3& d : {contact.normal, contact.tangent1, contact.tangent2})
+                CHECK(share_of_compliance(s, row(s, contact.centre, d)) > 0.99);
+            CHECK(share_of_compliance(s, row(s, contact.star[0], {0, 0, 1})) > 0.99);
+        }
+        // negative control: kept although it is elsewhere
+        slide(s, 1, 0.070, 0.020);
+        s.contact[1].kept = KeptColumns::all;
+        compute(s, 3);
+        CHECK(s.basis.solved == 0);
+        CHECK(share_of_compliance(s, row(s, s.contact[1].centre, {0, 0, 1})) < 0.95);
+    }
+}
+
+TEST_CASE("a contact that leaves takes its modes along, and nothing is solved for") {
+    Scene s = scene(0.1);
+    compute(s, 3);
+    s.contact[1] = s.contact[2]; // the second tool has gone
+    s.contact[0].slot = 0;
+    s.contact[1].slot = 2;
+    s.contact[0].kept = s.contact[1].kept = tissue::KeptColumns::all;
+    compute(s, 2);
+    CHECK(s.basis.solved == 0);
+    CHECK(s.basis.modes == 22);
+    check_orthonormal_and_diagonal(s);
+    for (int i = 0; i < 2; ++i)
+        CHECK(share_of_compliance(s, row(s, s.contact[i].centre, {0, 0, 1})) > 0.99);
 }
 
 TEST_CASE("solves that start from known modes take fewer iterations to the same answer") {

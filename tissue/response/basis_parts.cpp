@@ -6,25 +6,19 @@
 
 namespace tissue {
 
-void load_centre(Dofs dofs, const ContactSurface& surface, const BasisContact& contact,
-                 const Columns& z, int first) noexcept {
+void load_centre(Dofs dofs, const ContactSurface& surface, const BasisContact& contact, int k,
+                 std::span<double> load) noexcept {
     const std::array<glm::dvec3, kCentreLoads> free{contact.normal, contact.tangent1,
                                                     contact.tangent2},
         held{contact.tangent1, contact.tangent2, contact.normal};
-    for (const glm::dvec3& direction : contact.held ? held : free) {
-        const std::span<double> column = z.range(first++, 1);
-        std::fill(column.begin(), column.end(), 0.0);
-        add_row(dofs, surface, contact.centre, direction, 1.0, column);
-    }
+    std::fill(load.begin(), load.end(), 0.0);
+    add_row(dofs, surface, contact.centre, (contact.held ? held : free)[k], 1.0, load);
 }
 
-void load_star(Dofs dofs, const ContactSurface& surface, const BasisContact& contact,
-               const Columns& z, int first) noexcept {
-    for (const ContactPoint& star : contact.star) {
-        const std::span<double> column = z.range(first++, 1);
-        std::fill(column.begin(), column.end(), 0.0);
-        add_row(dofs, surface, star, contact.normal, 1.0, column);
-    }
+void load_star(Dofs dofs, const ContactSurface& surface, const BasisContact& contact, int k,
+               std::span<double> load) noexcept {
+    std::fill(load.begin(), load.end(), 0.0);
+    add_row(dofs, surface, contact.star[k], contact.normal, 1.0, load);
 }
 
 void inner_products(const double* a, const double* b, std::size_t n, int columns,

@@ -26,13 +26,14 @@ struct Columns {
     }
 };
 
-/// The loads of one contact's first moment in z, from column `first`: three at its centre, then,
-/// if it is not held, the star's.
+/// The loads of one contact's first moment: three at its centre, then, if it is not held, the
+/// star's four; the k-th of these.
 inline constexpr int kCentreLoads = 3, kStarLoads = 4;
-void load_centre(Dofs dofs, const ContactSurface& surface, const BasisContact& contact,
-                 const Columns& z, int first) noexcept;
-void load_star(Dofs dofs, const ContactSurface& surface, const BasisContact& contact,
-               const Columns& z, int first) noexcept;
+static_assert(kFree[0] == kCentreLoads + kStarLoads && kHeldMoments[0] == kCentreLoads);
+void load_centre(Dofs dofs, const ContactSurface& surface, const BasisContact& contact, int k,
+                 std::span<double> load) noexcept;
+void load_star(Dofs dofs, const ContactSurface& surface, const BasisContact& contact, int k,
+               std::span<double> load) noexcept;
 
 /// Lower triangle of a^T b, symmetric but for roundoff.
 void inner_products(const double* a, const double* b, std::size_t n, int columns,

@@ -112,12 +112,15 @@ int raw_columns(const CorotatedModel& model, const ContactSurface& surface,
         const int first = columns;
         for (std::size_t c = 0; c < contacts.size(); ++c) {
             const int count = (contacts[c].held ? kHeldMoments : kFree)[moment];
-            if (moment == 0)
-                load_centre(model.dof, surface, contacts[c], w.z, columns);
-            if (moment == 0 && !contacts[c].held)
-                load_star(model.dof, surface, contacts[c], w.z, columns + kCentreLoads);
-            for (int k = 0; moment > 0 && k < count; ++k)
-                next_moment(w, last[c] + k, columns + k);
+            for (int k = 0; k < count; ++k) {
+                const std::span<double> load = w.z.range(columns + k, 1);
+                if (moment > 0)
+                    next_moment(w, last[c] + k, columns + k);
+                else if (k < kCentreLoads)
+                    load_centre(model.dof, surface, contacts[c], k, load);
+                else
+                    load_star(model.dof, surface, contacts[c], k - kCentreLoads, load);
+            }
             last[c] = columns;
             columns += count;
         }
@@ -130,11 +133,15 @@ int raw_columns(const CorotatedModel& model, const ContactSurface& surface,
 
 } // namespace
 
-ContactBasis make_contact_basis(int unknowns) {
+ContactBasis make_contact_basis(int unknowns, bool keeps_columns) {
     const auto n = static_cast<std::size_t>(unknowns);
     ContactBasis basis;
     basis.shape.resize(n * kMaxBasis);
     basis.work.resize(3 * n * kMaxBasis + 3 * n);
+    if (keeps_columns) {
+        basis.column.resize(n * kMaxBasis);
+        basis.mass_column.resize(n * kMaxBasis);
+    }
     return basis;
 }
 

@@ -23,11 +23,17 @@ inline constexpr int kModesPerContact = 11;
 inline constexpr int kMaxContacts = 3;
 inline constexpr int kMaxBasis = kModesPerContact * kMaxContacts;
 
+/// Of a quadratic body's columns of a contact: whether those of before serve, as what later moments
+/// rest on or as they are.
+enum class KeptColumns : std::uint8_t { none, about, all };
+
 struct BasisContact {
     ContactPoint centre;
     std::array<ContactPoint, 4> star; // c +- delta t1, c +- delta t2
     glm::dvec3 normal, tangent1, tangent2;
     bool held = false; // by jaws; `star` means nothing then
+    int slot = -1;     // 0 to 2, where its columns are kept; -1: its place in the list
+    KeptColumns kept = KeptColumns::none; // there, with the same `held`
 };
 
 /// Buffers sized once; contents mean nothing between calls except as output.
@@ -38,8 +44,13 @@ struct ContactBasis {
     std::array<double, kMaxBasis> residual{}; // V^T (f_int - f_ext)
     std::array<double, kMaxBasis> rate{};     // V^T M v
     std::vector<double> work;
+    int solved = 0; // of a quadratic body: columns that the last call solved for
+    // of a quadratic body, by slot and moment: as they were solved for, of unit M-norm, and M times
+    // them; a body that moved on has other modes in them
+    std::vector<double> column, mass_column;
 };
-ContactBasis make_contact_basis(int unknowns);
+/// `keeps_columns`: for a quadratic body.
+ContactBasis make_contact_basis(int unknowns, bool keeps_columns = true);
 
 /// Fills `basis` for up to three contacts on one body. `system` must be made at `state`; if it
 /// could not be factored, or there is no contact, the basis has no modes.
@@ -55,7 +66,8 @@ void refresh_contact_basis(const CorotatedModel& model, const CorotatedState& st
 
 /// For a quadratic body after a step. Its columns are solved for roughly and projected exactly: as
 /// a Galerkin basis any columns serve, and an error of the columns counts squared. `system` then
-/// remembers the modes, and its solves start from them; without contacts it forgets them.
+/// remembers the modes, and its solves start from them; without contacts it forgets them. Solves
+/// are for contacts whose columns are not kept: one costs a third of three, or of one without any.
 void compute_contact_basis(const QuadraticModel& model, const ContactSurface& surface,
                            const QuadraticState& state, QuadraticSystem& system,
                            std::span<const BasisContact> contacts, ContactBasis& basis) noexcept;
