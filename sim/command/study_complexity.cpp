@@ -52,7 +52,7 @@ void add_complexity_study(CLI::App& study) {
             fmt::print(stderr,
                        "{:<17} {:>6} nodes  mean {:>8.3f} ms  p99 {:>8.3f}  setup {:>7.2f} s  "
                        "{:>7.1f} MB\n",
-                       tissue::name_of(r.tier), r.nodes, r.mean_ms, r.p99_ms, r.setup_s,
+                       tissue::name_of(r.tier), r.nodes, r.times.mean_ms, r.times.p99_ms, r.setup_s,
                        r.megabytes);
         });
         std::filesystem::create_directories(a->out);

@@ -126,6 +126,8 @@ void add_study_organ(CLI::App& study) {
     c->add_option("--friction", a->friction, "Of its tip on the skin");
     c->add_option("--edge", a->beside.press.edge_share,
                   "Longest edge under its tip, of the radius");
+    c->add_option("--core", a->beside.press.core_share,
+                  "How far around it edges are that short, of the radius");
     c->add_option("--step", a->beside.press.step_share, "Its greatest step, of the radius");
     c->add_option("--tier", a->tier, "Of the trainer's tissue beside it: corotated, quadratic");
     c->add_option("--model", a->beside.model, "The organ's mesh for the trainer's tissue");

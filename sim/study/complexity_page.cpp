@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <tuple>
 
 namespace sim {
 namespace {
@@ -14,20 +15,27 @@ std::string csv(const std::vector<ComplexityRow>& rows) {
     std::string out = "model,nodes,tets,mean_ms,p50_ms,p99_ms,max_ms,resting_ms,setup_s,megabytes,"
                       "linear_residual,residual,force_n\n";
     for (const ComplexityRow& r : rows)
-        out += fmt::format(
-            "{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.3g},{:.3g},"
-            "{:.6g}\n",
-            tissue::name_of(r.tier), r.nodes, r.tets, r.mean_ms, r.p50_ms, r.p99_ms, r.max_ms,
-            r.resting_ms, r.setup_s, r.megabytes, r.linear_residual, r.residual, r.force_n);
+        out +=
+            fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.3g},{:.3g},"
+                        "{:.6g}\n",
+                        tissue::name_of(r.tier), r.nodes, r.tets, r.times.mean_ms, r.times.p50_ms,
+                        r.times.p99_ms, r.times.max_ms, r.times.resting_ms, r.setup_s, r.megabytes,
+                        r.times.linear_residual, r.times.residual, r.times.force_n);
     return out;
 }
 
+using Figure = double (*)(const ComplexityRow&);
+constexpr Figure mean_ms = [](const ComplexityRow&r) { return r.times.mean_ms; },
+                 p99_ms = [](const ComplexityRow&r) { return r.times.p99_ms; },
+                 setup_s = [](const ComplexityRow&r) { return r.setup_s; },
+                 megabytes = [](const ComplexityRow&r) { return r.megabytes; };
+
 std::vector<std::pair<double, double>> points(const std::vector<ComplexityRow>& rows,
-                                              tissue::Tier tier, double ComplexityRow::*figure) {
+                                              tissue::Tier tier, Figure figure) {
     std::vector<std::pair<double, double>> out;
     for (const ComplexityRow& r : rows)
         if (r.tier == tier)
-            out.emplace_back(static_cast<double>(r.nodes), r.*figure);
+            out.emplace_back(static_cast<double>(r.nodes), figure(r));
     return out;
 }
 
@@ -66,8 +74,8 @@ std::string chart(const ComplexityOptions& o, const std::string& title, const st
 std::string time_chart(const ComplexityOptions& o, const std::vector<ComplexityRow>& rows) {
     std::vector<XySeries> lines;
     for (std::size_t k = 0; k < o.tiers.size(); ++k) {
-        const auto mean = points(rows, o.tiers[k], &ComplexityRow::mean_ms),
-                   tail = points(rows, o.tiers[k], &ComplexityRow::p99_ms);
+        const auto mean = points(rows, o.tiers[k], mean_ms),
+                   tail = points(rows, o.tiers[k], p99_ms);
         const int colour = static_cast<int>(k) + 1;
         lines.push_back({.name = named(o.tiers[k], mean, "mean"), .colour = colour, .point = mean});
         lines.push_back({.name = named(o.tiers[k], tail, "p99"),
@@ -83,7 +91,7 @@ std::string time_chart(const ComplexityOptions& o, const std::vector<ComplexityR
 std::string memory_chart(const ComplexityOptions& o, const std::vector<ComplexityRow>& rows) {
     std::vector<XySeries> lines;
     for (std::size_t k = 0; k < o.tiers.size(); ++k) {
-        const auto held = points(rows, o.tiers[k], &ComplexityRow::megabytes);
+        const auto held = points(rows, o.tiers[k], megabytes);
         lines.push_back({.name = named(o.tiers[k], held, "heap"),
                          .colour = static_cast<int>(k) + 1,
                          .point = held});
@@ -102,20 +110,19 @@ std::string table(const ComplexityOptions& o, const std::vector<ComplexityRow>& 
         for (const ComplexityRow& r : rows) {
             if (r.tier != tier)
                 continue;
-            out +=
-                fmt::format("| {} | {} | {:.3g} | {:.3g} | {:.3g} | {:.3g} | {:.2g} | {:.3g} | "
-                            "{:.3g} | {:.1e} | {:.1e} | {:.3f} |\n",
-                            r.nodes, r.tets, r.mean_ms, r.p50_ms, r.p99_ms, r.max_ms, r.resting_ms,
-                            r.setup_s, r.megabytes, r.linear_residual, r.residual, r.force_n);
+            out += fmt::format("| {} | {} | {:.3g} | {:.3g} | {:.3g} | {:.3g} | {:.2g} | {:.3g} | "
+                               "{:.3g} | {:.1e} | {:.1e} | {:.3f} |\n",
+                               r.nodes, r.tets, r.times.mean_ms, r.times.p50_ms, r.times.p99_ms,
+                               r.times.max_ms, r.times.resting_ms, r.setup_s, r.megabytes,
+                               r.times.linear_residual, r.times.residual, r.times.force_n);
         }
         out += "\nExponents over this range:";
-        for (const auto& [what, figure] :
-             {std::pair{"mean", &ComplexityRow::mean_ms}, std::pair{"p99", &ComplexityRow::p99_ms},
-              std::pair{"setup", &ComplexityRow::setup_s},
-              std::pair{"memory", &ComplexityRow::megabytes}}) {
+        for (const auto& [what, figure, end] :
+             {std::tuple{"mean", mean_ms, ","}, std::tuple{"p99", p99_ms, ","},
+              std::tuple{"setup", setup_s, ","}, std::tuple{"memory", megabytes, ".\n"}}) {
             const Growth g = growth(points(rows, tier, figure));
             out += fmt::format(" {} {:.2f} ({:.3g} at 1000 nodes){}", what, g.exponent, g.at_1000,
-                               figure == &ComplexityRow::megabytes ? ".\n" : ",");
+                               end);
         }
     }
     return out;

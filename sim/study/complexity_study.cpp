@@ -1,12 +1,10 @@
 // See the header.
 #include "sim/study/complexity_study.h"
 
-#include "sim/loop/tissue_loop.h"
 #include "tissue/response/footprint.h"
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <fmt/format.h>
 #include <malloc.h>
 #include <memory>
@@ -18,12 +16,6 @@ namespace {
 
 constexpr glm::dvec3 kSize_m{0.08, 0.08, 0.04};
 constexpr double kTip_m = 1.5e-3, kStep_s = 0.01;
-
-double cpu_s() {
-    timespec t{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 double heap_megabytes() {
     const struct mallinfo2 m = mallinfo2();
@@ -76,23 +68,16 @@ std::shared_ptr<const tissue::BakedOrgan> block_of(int nodes, tissue::Tier tier)
     return organ;
 }
 
-// Each tool down and up again once in a second, and round a circle of 5 mm meanwhile, so that its
-// contact point slides: at 31 mm/s, however many steps are timed. They begin one after the other.
-ToolsNow tools_at(const ComplexityOptions& o, int step) {
-    ToolsNow tools;
-    tools.tick = 10 * step;
-    constexpr double kRound_m = 5e-3, kAside_m = 22e-3, kAbove_m = 1e-3, kLap_s = 1.0;
+// Round the middle of the block's top, a third of a turn apart.
+TipSeats seats() {
+    constexpr double kAside_m = 22e-3;
+    TipSeats out;
     for (int i = 0; i < kTools; ++i) {
-        const double phase = 2.0 * std::numbers::pi * (kStep_s * step / kLap_s - 0.1 * i);
         const double around = 2.0 * std::numbers::pi * i / kTools;
-        const glm::dvec3 at{
-            0.5 * kSize_m.x + kAside_m * std::cos(around) + kRound_m * std::cos(phase),
-            0.5 * kSize_m.y + kAside_m * std::sin(around) + kRound_m * std::sin(phase), 0.0};
-        const double down_m = 0.5 * (1.0 - std::cos(phase)) * (o.depth_m + kAbove_m) - kAbove_m;
-        tools.tip[i].centre_m = {at.x, at.y, kSize_m.z + kTip_m - down_m};
-        tools.tip[i].radius_m = kTip_m;
+        out[i].place_m = {0.5 * kSize_m.x + kAside_m * std::cos(around),
+                          0.5 * kSize_m.y + kAside_m * std::sin(around), kSize_m.z};
     }
-    return tools;
+    return out;
 }
 
 ComplexityRow run_one(const ComplexityOptions& o, int nodes, tissue::Tier tier) {
@@ -104,44 +89,18 @@ ComplexityRow run_one(const ComplexityOptions& o, int nodes, tissue::Tier tier) 
                                     .damping_mass_1ps = 5.0,
                                     .damping_stiffness_s = 1e-3,
                                     .source = "study"};
-    const double heap = heap_megabytes(), begin_s = cpu_s();
+    const double heap = heap_megabytes(), begin_s = process_cpu_s();
     std::vector<Body> bodies;
     bodies.push_back(make_body(organ, material, {kTip_m, kTip_m, kTip_m}, kStep_s, tier));
     TissueConfig config;
     config.step_s = kStep_s;
     TissueRig rig = make_tissue_rig(std::move(bodies), config);
-    row.setup_s = cpu_s() - begin_s;
+    row.setup_s = process_cpu_s() - begin_s;
     row.nodes = tissue::rest_m(rig.bodies[0].soft->solid).size();
     row.tets = organ->mesh.tets.size();
-    const auto answer = std::make_unique<TissueAnswer>();
-    ToolsNow away = tools_at(o, 0);
-    for (haptics::ToolTip& tip : away.tip)
-        tip.centre_m.z += 0.1;
-    const double before_s = cpu_s();
-    constexpr int kResting = 20;
-    for (int s = 0; s < kResting; ++s)
-        tissue_step(rig, away, *answer);
-    row.resting_ms = 1e3 * (cpu_s() - before_s) / kResting;
-    std::vector<double> ms;
-    for (int s = 0; s < o.steps; ++s) {
-        const ToolsNow tools = tools_at(o, s);
-        const double from_s = cpu_s();
-        const StepOutcome outcome = tissue_step(rig, tools, *answer);
-        ms.push_back(1e3 * (cpu_s() - from_s));
-        row.linear_residual = std::max(row.linear_residual, outcome.linear_residual);
-        row.residual = std::max(row.residual, outcome.residual);
-        for (const FemContact& contact : rig.contact)
-            row.force_n = std::max(row.force_n, glm::length(contact.force_n));
-        row.mean_ms += ms.back() / o.steps;
-    }
+    row.times =
+        time_three_tips(rig, seats(), {.radius_m = kTip_m, .depth_m = o.depth_m, .steps = o.steps});
     row.megabytes = heap_megabytes() - heap;
-    std::ranges::sort(ms);
-    const auto at = [&](double share) { // nearest rank
-        return ms[static_cast<std::size_t>(std::ceil(share * static_cast<double>(ms.size()))) - 1];
-    };
-    row.p50_ms = at(0.5);
-    row.p99_ms = at(0.99);
-    row.max_ms = ms.back();
     return row;
 }
 

@@ -5,7 +5,7 @@
 // this machine's, exponents are the model's.
 #pragma once
 
-#include "tissue/solver/solid.h"
+#include "sim/study/three_tips.h"
 
 #include <functional>
 #include <string>
@@ -26,11 +26,9 @@ struct ComplexityOptions {
 struct ComplexityRow {
     tissue::Tier tier{};
     std::size_t nodes = 0, tets = 0; // that there are; of the tier's own shapes
-    double mean_ms = 0.0, p50_ms = 0.0, p99_ms = 0.0, max_ms = 0.0; // CPU of all threads, a step
-    double resting_ms = 0.0;                                        // of a step before the touch
+    StepTimes times{};
     double setup_s = 0.0;   // CPU: matrices, the first factor
     double megabytes = 0.0; // on the heap, of the body with all that steps need
-    double linear_residual = 0.0, residual = 0.0, force_n = 0.0; // worst, worst, largest
 };
 
 /// y = c nodes^exponent, by least squares of the logarithms.

@@ -91,14 +91,37 @@ void add_rows(const OrganReferenceOptions& o, int place, OrganReference& study) 
 std::string record_key(const OrganReferenceOptions& o, const tissue::BakedOrgan& organ) {
     std::string key = fmt::format(
         "# organ reference: {} ({} nodes, {} tets), E {} Pa, nu {}, hold {} {} {} {} {}, seed {}, "
-        "radius {} m, friction {}, edge {}, step {}, depths",
+        "radius {} m, friction {}, edge {} in {}, step {}, depths",
         organ.name, organ.mesh.rest_m.size(), organ.mesh.tets.size(), o.material.young_pa,
         o.material.poisson, o.hold.toward.x, o.hold.toward.y, o.hold.toward.z, o.hold.share,
         o.hold.length_m, o.seed, o.press.radius_m, o.press.friction, o.press.edge_share,
-        o.press.step_share);
+        o.press.core_share, o.press.step_share);
     for (const double d : o.press.depth_m)
         key += fmt::format(" {}", d);
     return key;
+}
+
+// Three tips at random places of `usual`, of another seed than those that are pressed.
+StepTimes times_on(const OrganPointer& organ, const Body& usual, const OrganReferenceOptions& o) {
+    constexpr double kStep_s = 0.01;
+    ThreeTipsOptions tips = o.tips;
+    tips.radius_m = o.press.radius_m;
+    std::vector<Body> bodies;
+    bodies.push_back(make_body(organ, o.material, {tips.radius_m, tips.radius_m, tips.radius_m},
+                               kStep_s, o.tier));
+    TissueConfig config;
+    config.step_s = kStep_s;
+    TissueRig rig = make_tissue_rig(std::move(bodies), config);
+    const Body& body = rig.bodies.front();
+    const std::vector<dvec3> places = random_places(usual, kTools, o.seed + 1);
+    TipSeats seats;
+    for (int i = 0; i < kTools; ++i) {
+        const haptics::SurfacePoint at = nearest_on(body, places[i]).at;
+        const dvec3 out = normal_on(body, at);
+        const dvec3 axis = std::abs(out.x) < 0.6 ? dvec3{1, 0, 0} : dvec3{0, 1, 0};
+        seats[i] = {place_on(body, at), out, glm::normalize(glm::cross(out, axis))};
+    }
+    return time_three_tips(rig, seats, tips);
 }
 
 } // namespace
@@ -120,6 +143,7 @@ OrganReference run_organ_reference(const OrganReferenceOptions& o,
     TrainerTip tip(model, o.material, o.press.radius_m, o.press.friction, o.tier);
     OrganReference study{.nodes = static_cast<int>(model->mesh.rest_m.size()),
                          .tets = static_cast<int>(model->mesh.tets.size())};
+    study.times = times_on(model, usual.body(), o);
     const std::string key = record_key(o, *organ);
     std::vector<ReferencePress> pressed = read_presses(o.record, key);
     for (const dvec3& place : random_places(usual.body(), o.places, o.seed)) {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "sim/study/reference_press.h"
+#include "sim/study/three_tips.h"
 #include "sim/study/trainer_press.h"
 
 #include <filesystem>
@@ -32,6 +33,7 @@ struct OrganReferenceOptions {
     std::string model;                           // the organ's mesh for ours; empty: the same
     std::filesystem::path record{};              // of the reference's presses; empty: none
     ReferencePressOptions press{.depth_m = {}};
+    ThreeTipsOptions tips{.steps = 300}; // what a step costs
 };
 
 struct Gates {
@@ -57,6 +59,7 @@ struct OrganReference {
     std::vector<TrainerPress> place{};
     std::vector<ReferencePress> reference{};
     std::vector<ReferenceRow> row{}; // place by place, depths ascending
+    StepTimes times{};               // of three tips at places of its own
 };
 
 /// Places are those of the corotated tier's mesh of `organ`, whatever ours is. `say` gets a line

@@ -169,25 +169,35 @@ nlohmann::ordered_json json_of(const OrganReferenceOptions& o, const OrganRefere
               {"force_percent", s.worst_percent},
               {"stiffness_percent", s.worst_stiffness_percent},
               {"direction_deg", s.worst_deg}}},
-            {"reference", {{"most_nodes", nodes}, {"cpu_s", cpu_s}}}};
+            {"reference", {{"most_nodes", nodes}, {"cpu_s", cpu_s}}},
+            {"three_tips",
+             {{"steps", o.tips.steps},
+              {"most_depth_mm", 1e3 * o.tips.depth_m},
+              {"mean_ms", study.times.mean_ms},
+              {"p50_ms", study.times.p50_ms},
+              {"p99_ms", study.times.p99_ms},
+              {"max_ms", study.times.max_ms},
+              {"linear_residual", study.times.linear_residual}}}};
 }
 
 std::string page(const OrganReferenceOptions& o, const OrganReference& study) {
     const ReferenceSummary s = summary_of(o, study);
     std::string out = fmt::format(
         "# What a tip feels on an organ, beside the reference\n\n{}.\nMachine: {}.\nReference: "
-        "ten-node tetrahedra of the same facets, longest edge under the tip {} of its radius, "
+        "ten-node tetrahedra of the same facets, longest edge {} of the tip's radius within {} of "
+        "it, "
         "neo-Hooke, Coulomb friction, steps of {} of the radius.\nGates: force within {} % above "
         "{} N and {} mN below, stiffness between neighbouring depths within {} %, direction "
         "within {} degrees.\n\n![force against depth](reference.svg)\n\n| place | reached mm | "
         "worst force mN | worst % | worst stiffness % | worst degrees | inside A1, A2, A3 of "
         "depths |\n|---|---|---|---|---|---|---|\n",
-        what(o, study), machine(), o.press.edge_share, o.press.step_share, kGates.force_percent,
-        kGates.full_force_n, 1e3 * kGates.small_force_n, kGates.stiffness_percent,
-        kGates.direction_deg);
+        what(o, study), machine(), o.press.edge_share, o.press.core_share, o.press.step_share,
+        kGates.force_percent, kGates.full_force_n, 1e3 * kGates.small_force_n,
+        kGates.stiffness_percent, kGates.direction_deg);
     const std::size_t depths = o.press.depth_m.size();
     for (std::size_t i = 0; i < study.place.size(); ++i) {
-        OrganReference one{study.nodes, study.tets, {study.place[i]}, {study.reference[i]}, {}};
+        OrganReference one{study.nodes,          study.tets, {study.place[i]},
+                           {study.reference[i]}, {},         study.times};
         one.row.assign(study.row.begin() + static_cast<std::ptrdiff_t>(i * depths),
                        study.row.begin() + static_cast<std::ptrdiff_t>((i + 1) * depths));
         const ReferenceSummary p = summary_of(o, one);
@@ -202,6 +212,12 @@ std::string page(const OrganReferenceOptions& o, const OrganReference& study) {
             out += fmt::format("\nPlace {}: the reference stopped {}.\n", i + 1,
                                study.reference[i].stopped);
     }
+    out += fmt::format(
+        "\nSteps of 10 ms with the local models of three tips that press to {} mm and slide at 31 "
+        "mm/s, {} of them, CPU of all threads: mean {:.2f} ms, median {:.2f}, p99 {:.2f}, longest "
+        "{:.2f}.\n",
+        1e3 * o.tips.depth_m, o.tips.steps, study.times.mean_ms, study.times.p50_ms,
+        study.times.p99_ms, study.times.max_ms);
     if (s.solved < s.rows) {
         out += fmt::format("\n**Gap: the reference found no equilibrium at {} of {} depths; {} of "
                            "{} places went to the end.**\n",

@@ -16,7 +16,6 @@ namespace {
 using glm::dvec3;
 
 constexpr double kTolerance = 1e-5; // of Newton's relative residual: forces to 1e-4
-constexpr double kCoreShare = 0.8;  // of the radius: where the tip's edges are wanted
 constexpr double kGrowth = 1.0;     // of edges per distance
 
 std::vector<std::uint8_t> held_flags(const tissue::QuadraticMesh& mesh,
@@ -65,7 +64,7 @@ ReferencePress press_reference(const tissue::BakedOrgan& organ, const tissue::Ma
     const tissue::RefinedMesh fine =
         tissue::refined(organ.mesh, organ.anchored, organ.bed, press.place_m,
                         {.edge_m = o.edge_share * o.radius_m,
-                         .core_m = kCoreShare * o.radius_m,
+                         .core_m = o.core_share * o.radius_m,
                          .growth = kGrowth});
     const tissue::QuadraticMesh mesh = tissue::quadratic_mesh(fine.mesh);
     press.place_m += tissue::touch_depth_m(mesh, press) * into;

@@ -18,6 +18,7 @@ struct ReferencePressOptions {
     double friction = 0.1;       // Coulomb coefficient
     std::vector<double> depth_m; // ascending
     double edge_share = 0.8;     // longest edge under the tip, of the radius
+    double core_share = 0.8;     // how far around the place edges are that short, of the radius
     double step_share = 0.5;     // greatest step of depth, of the radius
 };
 
