@@ -64,7 +64,7 @@ constexpr double kBasisDrift_m = 5e-3;
 // How much the columns of a contact are worn: 1 is where it has left the middle of its star, or
 // the body has drifted so far. None: infinitely.
 double wear(const Body& body, const tissue::BasisContact& contact) noexcept {
-    constexpr double kMiddle = 0.25; // of an arm
+    constexpr double kMiddle = 0.4; // of an arm
     const SoftBody& soft = *body.soft;
     const BasisPlace& place = soft.basis_place[contact.slot];
     if (!place.known || place.held != contact.held)
@@ -72,17 +72,18 @@ double wear(const Body& body, const tissue::BasisContact& contact) noexcept {
     const double middle_m =
         kMiddle * arm_of_star_m(body, static_cast<int>(contact.centre.triangle));
     const double slid = glm::distance(rest_place(body, contact.centre), place.rest_m) / middle_m;
-    // those of corotated bodies are solved for whenever there is another factor
     const bool drifts = tissue::tier_of(soft.solid) == tissue::Tier::quadratic;
+    if (!drifts && soft.basis_of != soft.linearisations) // another factor
+        return std::numeric_limits<double>::infinity();
     const double drifted = (soft.moved_m - place.moved_m) / kBasisDrift_m;
     return drifts ? std::max(slid, drifted) : slid;
 }
 
 // Which columns to solve for: one contact's in a step, so that steps are alike, or those that
-// cannot wait (the star serves to three times its middle). Those of somewhere else are of no use.
-// False: all are kept.
+// cannot wait, three quarters of an arm away. Those of three arms away are of no use. False: all
+// are kept.
 bool choose_columns(const Body& body, std::span<tissue::BasisContact> contacts) noexcept {
-    constexpr double kWorn = 1.0, kWornOut = 3.0, kElsewhere = 12.0;
+    constexpr double kWorn = 1.0, kWornOut = 1.875, kElsewhere = 7.5;
     tissue::BasisContact* worst = nullptr;
     double most = kWorn;
     bool any = false;
@@ -138,7 +139,7 @@ void compute_basis(Body& body, std::span<tissue::BasisContact> contacts) noexcep
             },
             soft.solid);
         for (const tissue::BasisContact& contact : contacts) {
-            if (!quadratic || contact.kept != tissue::KeptColumns::all)
+            if (contact.kept != tissue::KeptColumns::all)
                 soft.basis_place[contact.slot] = {true, contact.held,
                                                   rest_place(body, contact.centre), soft.moved_m};
         }

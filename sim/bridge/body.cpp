@@ -148,16 +148,15 @@ Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Ma
     const auto n = static_cast<std::size_t>(unknowns);
     tissue::SkinFrames frame = tissue::make_skin_frames(skin, tissue::rest_m(solid));
     const std::vector<double> rows(n * 3 * haptics::kTools), unknown(n);
-    body.soft.emplace(
-        SoftBody{.solid = std::move(solid),
-                 .basis = tissue::make_contact_basis(unknowns, tier == tissue::Tier::quadratic),
-                 .skin_frame = std::move(frame),
-                 .shape_by_unknown = std::vector<double>(n * tissue::kMaxBasis),
-                 .motion_m = unknown,
-                 .rows = rows,
-                 .answer_m = rows,
-                 .load_n = unknown,
-                 .drift_m = unknown});
+    body.soft.emplace(SoftBody{.solid = std::move(solid),
+                               .basis = tissue::make_contact_basis(unknowns),
+                               .skin_frame = std::move(frame),
+                               .shape_by_unknown = std::vector<double>(n * tissue::kMaxBasis),
+                               .motion_m = unknown,
+                               .rows = rows,
+                               .answer_m = rows,
+                               .load_n = unknown,
+                               .drift_m = unknown});
     tissue::place_surface(skin, body.soft->skin_frame, tissue::position_m(body.soft->solid),
                           body.skin_m, body.skin_normal);
     return body;

@@ -101,61 +101,103 @@ void fill_masses(const CorotatedModel& model, const CorotatedState& state, const
     }
 }
 
-// The raw columns and their loads, moment by moment, each one solve for all contacts together.
-// `blocks`: columns of each moment. Returns how many in all.
+// Of a column that is kept, or is to be: y and z side by side in the basis.
+std::size_t kept_at(std::span<const BasisContact> contacts, std::size_t c, int column,
+                    std::size_t n) noexcept {
+    const int slot = contacts[c].slot < 0 ? static_cast<int>(c) : contacts[c].slot;
+    return static_cast<std::size_t>(slot * kModesPerContact + column) * n;
+}
+
+// One moment's loads of a contact, from column `at`; its last moment begins at `last`.
+void loads_of(const CorotatedModel& model, const ContactSurface& surface,
+              const BasisContact& contact, int moment, int last, int at, const Work& w) noexcept {
+    const int count = (contact.held ? kHeldMoments : kFree)[moment];
+    for (int k = 0; k < count; ++k) {
+        const std::span<double> load = w.z.range(at + k, 1);
+        if (moment > 0)
+            next_moment(w, last + k, at + k);
+        else if (k < kCentreLoads)
+            load_centre(model.dof, surface, contact, k, load);
+        else
+            load_star(model.dof, surface, contact, k - kCentreLoads, load);
+    }
+}
+
+// The raw columns and their loads, moment by moment, each one solve for all contacts together that
+// stand side by side; those that are kept are not solved for. `blocks`: columns of each moment.
+// Returns how many in all.
 int raw_columns(const CorotatedModel& model, const ContactSurface& surface,
                 std::span<const BasisContact> contacts, SparseFactor& factor, const Work& w,
-                std::array<int, kMoments>& blocks) noexcept {
-    std::array<int, kMaxContacts> last{}; // first column of each contact, one moment before
+                ContactBasis& basis, std::array<int, kMoments>& blocks) noexcept {
+    const std::size_t n = w.y.n;
+    std::array<int, kMaxContacts> last{}, known{}; // first column of a moment, columns before it
     int columns = 0;
     for (int moment = 0; moment < kMoments; ++moment) {
         const int first = columns;
+        int unsolved = columns;
+        const auto solve_up_to = [&](int end) {
+            if (end > unsolved)
+                solve_columns(w, unsolved, end - unsolved, factor);
+            basis.solved += end - unsolved;
+        };
+        std::array<int, kMaxContacts> begin{};
         for (std::size_t c = 0; c < contacts.size(); ++c) {
             const int count = (contacts[c].held ? kHeldMoments : kFree)[moment];
-            for (int k = 0; k < count; ++k) {
-                const std::span<double> load = w.z.range(columns + k, 1);
-                if (moment > 0)
-                    next_moment(w, last[c] + k, columns + k);
-                else if (k < kCentreLoads)
-                    load_centre(model.dof, surface, contacts[c], k, load);
-                else
-                    load_star(model.dof, surface, contacts[c], k - kCentreLoads, load);
+            begin[c] = columns;
+            if (contacts[c].kept == KeptColumns::all) {
+                solve_up_to(columns);
+                const std::size_t at = kept_at(contacts, c, known[c], n);
+                std::copy_n(basis.column.data() + at, n * static_cast<std::size_t>(count),
+                            w.y[columns]);
+                std::copy_n(basis.mass_column.data() + at, n * static_cast<std::size_t>(count),
+                            w.z[columns]);
+                unsolved = columns + count;
+            } else {
+                loads_of(model, surface, contacts[c], moment, last[c], columns, w);
             }
-            last[c] = columns;
             columns += count;
         }
+        solve_up_to(columns);
+        for (std::size_t c = 0; c < contacts.size(); ++c) {
+            const int count = (contacts[c].held ? kHeldMoments : kFree)[moment];
+            const std::size_t at = kept_at(contacts, c, known[c], n);
+            if (contacts[c].kept != KeptColumns::all) {
+                std::copy_n(w.y[begin[c]], n * static_cast<std::size_t>(count),
+                            basis.column.data() + at);
+                std::copy_n(w.z[begin[c]], n * static_cast<std::size_t>(count),
+                            basis.mass_column.data() + at);
+            }
+            last[c] = begin[c];
+            known[c] += count;
+        }
         blocks[moment] = columns - first;
-        if (columns > first)
-            solve_columns(w, first, columns - first, factor);
     }
     return columns;
 }
 
 } // namespace
 
-ContactBasis make_contact_basis(int unknowns, bool keeps_columns) {
+ContactBasis make_contact_basis(int unknowns) {
     const auto n = static_cast<std::size_t>(unknowns);
     ContactBasis basis;
     basis.shape.resize(n * kMaxBasis);
     basis.work.resize(3 * n * kMaxBasis + 3 * n);
-    if (keeps_columns) {
-        basis.column.resize(n * kMaxBasis);
-        basis.mass_column.resize(n * kMaxBasis);
-    }
+    basis.column.resize(n * kMaxBasis);
+    basis.mass_column.resize(n * kMaxBasis);
     return basis;
 }
 
 void compute_contact_basis(const CorotatedModel& model, const ContactSurface& surface,
                            const CorotatedState& state, CorotatedSystem& system,
                            std::span<const BasisContact> contacts, ContactBasis& basis) noexcept {
-    basis.modes = 0;
+    basis.modes = basis.solved = 0;
     if (contacts.empty() || contacts.size() > kMaxContacts || !system.factored)
         return;
     const auto n = static_cast<std::size_t>(model.unknowns);
     const Work w = split(basis, n);
     fill_masses(model, state, w);
     std::array<int, kMoments> blocks{};
-    const int columns = raw_columns(model, surface, contacts, system.factor, w, blocks);
+    const int columns = raw_columns(model, surface, contacts, system.factor, w, basis, blocks);
     for (int j = 0; j < columns; ++j) {
         for (std::size_t i = 0; i < n; ++i) {
             w.y[j][i] *= w.root[i];

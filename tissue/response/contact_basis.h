@@ -23,8 +23,9 @@ inline constexpr int kModesPerContact = 11;
 inline constexpr int kMaxContacts = 3;
 inline constexpr int kMaxBasis = kModesPerContact * kMaxContacts;
 
-/// Of a quadratic body's columns of a contact: whether those of before serve, as what later moments
-/// rest on or as they are.
+/// Whether the columns of a contact from before serve: as they are, or only as what later moments
+/// of a quadratic body rest on. Of a corotated body all serve as long as the factor is the same,
+/// none with another.
 enum class KeptColumns : std::uint8_t { none, about, all };
 
 struct BasisContact {
@@ -44,13 +45,12 @@ struct ContactBasis {
     std::array<double, kMaxBasis> residual{}; // V^T (f_int - f_ext)
     std::array<double, kMaxBasis> rate{};     // V^T M v
     std::vector<double> work;
-    int solved = 0; // of a quadratic body: columns that the last call solved for
-    // of a quadratic body, by slot and moment: as they were solved for, of unit M-norm, and M times
-    // them; a body that moved on has other modes in them
+    int solved = 0; // columns that the last call solved for
+    // by slot and moment: as they were solved for, of unit M-norm, and of a quadratic body M times
+    // them, of a corotated one their loads
     std::vector<double> column, mass_column;
 };
-/// `keeps_columns`: for a quadratic body.
-ContactBasis make_contact_basis(int unknowns, bool keeps_columns = true);
+ContactBasis make_contact_basis(int unknowns);
 
 /// Fills `basis` for up to three contacts on one body. `system` must be made at `state`; if it
 /// could not be factored, or there is no contact, the basis has no modes.
