@@ -1,10 +1,12 @@
 // tests/tissue/cylinders.h
-// Ten-node tetrahedra in rings, with a thin straight hole for the axis, which a test holds there:
-// what that changes goes with the square of its radius. For punches, layers and twisted rods.
+// Ten-node tetrahedra in rings around the axis, or around a thin straight hole for it, which a test
+// holds there: what that changes goes with the square of its radius. For punches, layers, tubes and
+// twisted rods.
 #pragma once
 
 #include "tissue/mesh/quadratic_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
@@ -13,7 +15,8 @@
 
 namespace cylinders {
 
-/// Ascending; around the axis `segments` to `arc_rad`, a whole turn is closed.
+/// Ascending, from 0 without a hole; around the axis `segments` to `arc_rad`, a whole turn is
+/// closed.
 struct Rings {
     std::vector<double> radius_m{}, z_m{};
     int segments = 4;
@@ -25,7 +28,7 @@ inline double radius_m(const glm::dvec3& x) {
     return std::hypot(x.x, x.y);
 }
 
-/// Where two rings meet at a seam, one node serves both.
+/// Where two rings meet at a seam, one node serves both; what the axis makes flat is left out.
 inline tissue::TetMesh welded(const tissue::TetMesh& mesh) {
     tissue::TetMesh out;
     std::map<std::array<long long, 3>, std::uint32_t> place;
@@ -41,7 +44,10 @@ inline tissue::TetMesh welded(const tissue::TetMesh& mesh) {
     for (tissue::Tet t : mesh.tets) {
         for (auto& node : t)
             node = of_node[node];
-        out.tets.push_back(t);
+        tissue::Tet sorted = t;
+        std::sort(sorted.begin(), sorted.end());
+        if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end())
+            out.tets.push_back(t);
     }
     return out;
 }
@@ -64,6 +70,8 @@ inline tissue::QuadraticMesh mesh(const Rings& rings) {
         for (std::size_t k = 0; k < tissue::kEdge.size(); ++k) {
             const glm::dvec3 a = out.rest_m[t[tissue::kEdge[k][0]]];
             const glm::dvec3 b = out.rest_m[t[tissue::kEdge[k][1]]];
+            if (!(std::min(radius_m(a), radius_m(b)) > 0.0))
+                continue; // from the axis outward: straight
             const glm::dvec3 between = a / radius_m(a) + b / radius_m(b);
             const double r = 0.5 * (radius_m(a) + radius_m(b)) / radius_m(between);
             out.rest_m[t[4 + k]] = {r * between.x, r * between.y, 0.5 * (a.z + b.z)};
