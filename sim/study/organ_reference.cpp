@@ -153,6 +153,12 @@ OrganReference run_organ_reference(const OrganReferenceOptions& o,
                     into = -normal_on(usual.body(), foot.at);
         study.place.push_back(tip.press(at_m, into, o.press.depth_m));
         if (i == static_cast<int>(pressed.size())) {
+            if (o.only_recorded) {
+                throw std::invalid_argument(fmt::format(
+                    "{}: {} presses of this study are recorded: there is none of place {}; its "
+                    "first line would be: {}",
+                    o.record.string(), pressed.size(), i + 1, key));
+            }
             pressed.push_back(press_reference(
                 *organ, o.material, at_m, into, o.press, [&](double depth_m, double force_n) {
                     say(fmt::format("place {:>2}: {:5.2f} mm, {:4.0f} mN", i + 1, 1e3 * depth_m,

@@ -32,6 +32,7 @@ struct OrganReferenceOptions {
     tissue::Tier tier = tissue::Tier::corotated; // of ours
     std::string model;                           // the organ's mesh for ours; empty: the same
     std::filesystem::path record{};              // of the reference's presses; empty: none
+    bool only_recorded = false;                  // presses nothing that the record lacks
     ReferencePressOptions press{.depth_m = {}};
     ThreeTipsOptions tips{.steps = 300}; // what a step costs
 };
@@ -64,7 +65,8 @@ struct OrganReference {
 
 /// Places are those of the corotated tier's mesh of `organ`, whatever ours is. `say` gets a line
 /// for each place. Throws as make_body() and press_reference() do.
-/// `keep` (may be empty) gets the study after each place.
+/// `keep` (may be empty) gets the study after each place. With only_recorded, a place that the
+/// record lacks is std::invalid_argument.
 OrganReference run_organ_reference(const OrganReferenceOptions& options,
                                    const std::function<void(const std::string&)>& say,
                                    const std::function<void(const OrganReference&)>& keep = {});

@@ -26,6 +26,8 @@ sim::OrganReferenceOptions block() {
     return o;
 }
 
+constexpr int kLiverPlaces = 3; // that are recorded
+
 // One place, two depths, of which the reference reached the first alone.
 sim::OrganReference halfway() {
     sim::OrganReference study;
@@ -143,4 +145,38 @@ TEST_CASE("organ reference: deep and stuck, on a block of 256 nodes, the law is 
     const auto study = sim::run_organ_reference(o, [](const std::string&) {});
     REQUIRE(summary_of(o, study).solved == 1);
     CHECK(std::abs(study.row[0].error_percent) < 7.0);
+}
+
+TEST_CASE("organ reference: a 3 mm tip to 10 mm on the liver is inside A1, A2 and A3") {
+    // the reference's presses take minutes each; made anew into another record by
+    //   trocar study organ liver --reference --friction inf --edge 0.5 --core 1.5 --out DIR
+    sim::OrganReferenceOptions o;
+    o.organ = "liver";
+    o.material.young_pa = 5.4e3;
+    o.places = kLiverPlaces;
+    o.press.friction = std::numeric_limits<double>::infinity();
+    o.press.edge_share = 0.5;
+    o.press.core_share = 1.5;
+    for (int i = 1; i <= 20; ++i)
+        o.press.depth_m.push_back(0.5e-3 * i);
+    o.record = fs::path(TROCAR_SOURCE) / "tests/data/presses/liver.presses";
+    o.only_recorded = true;
+    o.tips.steps = 10;
+    const auto study = sim::run_organ_reference(o, [](const std::string&) {});
+    const auto s = summary_of(o, study);
+    CHECK(s.solved == 20 * kLiverPlaces);
+    CHECK(s.a1 == s.rows);
+    for (const sim::ReferenceRow& row : study.row) {
+        CAPTURE(row.place);
+        CAPTURE(row.depth_m);
+        // a first touch of less than 10 mN, which nobody feels, leans as its facet does in the
+        // reference, and as the smooth skin over the facets does in ours
+        CHECK(((row.a2 && row.a3) || row.reference_n < 0.01));
+    }
+    CHECK(s.a2 >= s.rows - kLiverPlaces);
+    CHECK(s.a3 >= s.rows - kLiverPlaces);
+    // a place that is not recorded is not pressed
+    o.places = kLiverPlaces + 1;
+    CHECK_THROWS_WITH(sim::run_organ_reference(o, [](const std::string&) {}),
+                      doctest::Contains("there is none of place"));
 }
