@@ -17,6 +17,26 @@ inline constexpr std::array<int, kMoments> kFree{7, 3, 1, 0}; // n t1 t2 and the
 inline constexpr std::array<int, kMoments> kHeldMoments{3, 3, 3, 2}; // t1 t2 n thrice, t1 t2
 static_assert(7 + 3 + 1 == kModesPerContact && 3 + 3 + 3 + 2 == kModesPerContact);
 
+inline int columns_of(const BasisContact& contact, int moment) noexcept {
+    return (contact.held ? kHeldMoments : kFree)[moment];
+}
+/// The first column of a moment among those of its contact.
+inline int first_of(bool held, int moment) noexcept {
+    int first = 0;
+    for (int m = 0; m < moment; ++m)
+        first += (held ? kHeldMoments : kFree)[m];
+    return first;
+}
+
+/// Where a contact's columns are kept, and where one of them begins among the numbers of all.
+inline int slot_of(std::span<const BasisContact> contacts, std::size_t c) noexcept {
+    return contacts[c].slot < 0 ? static_cast<int>(c) : contacts[c].slot;
+}
+inline std::size_t kept_at(std::span<const BasisContact> contacts, std::size_t c, int column,
+                           std::size_t n) noexcept {
+    return static_cast<std::size_t>(slot_of(contacts, c) * kModesPerContact + column) * n;
+}
+
 struct Columns {
     double* at;
     std::size_t n;

@@ -101,18 +101,10 @@ void fill_masses(const CorotatedModel& model, const CorotatedState& state, const
     }
 }
 
-// Of a column that is kept, or is to be: y and z side by side in the basis.
-std::size_t kept_at(std::span<const BasisContact> contacts, std::size_t c, int column,
-                    std::size_t n) noexcept {
-    const int slot = contacts[c].slot < 0 ? static_cast<int>(c) : contacts[c].slot;
-    return static_cast<std::size_t>(slot * kModesPerContact + column) * n;
-}
-
-// One moment's loads of a contact, from column `at`; its last moment begins at `last`.
+// One moment's loads of a contact, from column `at`; those of the moment before begin at `last`.
 void loads_of(const CorotatedModel& model, const ContactSurface& surface,
               const BasisContact& contact, int moment, int last, int at, const Work& w) noexcept {
-    const int count = (contact.held ? kHeldMoments : kFree)[moment];
-    for (int k = 0; k < count; ++k) {
+    for (int k = 0; k < columns_of(contact, moment); ++k) {
         const std::span<double> load = w.z.range(at + k, 1);
         if (moment > 0)
             next_moment(w, last + k, at + k);
@@ -123,53 +115,61 @@ void loads_of(const CorotatedModel& model, const ContactSurface& surface,
     }
 }
 
-// The raw columns and their loads, moment by moment, each one solve for all contacts together that
-// stand side by side; those that are kept are not solved for. `blocks`: columns of each moment.
-// Returns how many in all.
+// One moment's columns and loads of a contact between the basis, which keeps them, and the work.
+void keep(std::span<const BasisContact> contacts, std::size_t c, int moment, int at, const Work& w,
+          ContactBasis& basis) noexcept {
+    const auto size = w.y.n * static_cast<std::size_t>(columns_of(contacts[c], moment));
+    const std::size_t to = kept_at(contacts, c, first_of(contacts[c].held, moment), w.y.n);
+    std::copy_n(w.y[at], size, basis.column.data() + to);
+    std::copy_n(w.z[at], size, basis.mass_column.data() + to);
+}
+void recall(std::span<const BasisContact> contacts, std::size_t c, int moment,
+            const ContactBasis& basis, int at, const Work& w) noexcept {
+    const auto size = w.y.n * static_cast<std::size_t>(columns_of(contacts[c], moment));
+    const std::size_t from = kept_at(contacts, c, first_of(contacts[c].held, moment), w.y.n);
+    std::copy_n(basis.column.data() + from, size, w.y[at]);
+    std::copy_n(basis.mass_column.data() + from, size, w.z[at]);
+}
+
+// One moment of what is not kept, a solve for contacts that stand side by side, and keeps it.
+// `begin`: the first column of each contact.
+void solve_new(std::span<const BasisContact> contacts, int moment,
+               const std::array<int, kMaxContacts>& begin, SparseFactor& factor, const Work& w,
+               ContactBasis& basis) noexcept {
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
+        int count = 0;
+        const std::size_t from = c;
+        for (; c < contacts.size() && contacts[c].kept != KeptColumns::all; ++c)
+            count += columns_of(contacts[c], moment);
+        if (count == 0)
+            continue;
+        solve_columns(w, begin[from], count, factor);
+        basis.solved += count;
+        for (std::size_t k = from; k < c; ++k)
+            keep(contacts, k, moment, begin[k], w, basis);
+    }
+}
+
+// The raw columns and their loads, moment by moment. `blocks`: columns of each moment. Returns how
+// many in all.
 int raw_columns(const CorotatedModel& model, const ContactSurface& surface,
                 std::span<const BasisContact> contacts, SparseFactor& factor, const Work& w,
                 ContactBasis& basis, std::array<int, kMoments>& blocks) noexcept {
-    const std::size_t n = w.y.n;
-    std::array<int, kMaxContacts> last{}, known{}; // first column of a moment, columns before it
+    std::array<int, kMaxContacts> last{}; // first column of each contact, one moment before
     int columns = 0;
     for (int moment = 0; moment < kMoments; ++moment) {
         const int first = columns;
-        int unsolved = columns;
-        const auto solve_up_to = [&](int end) {
-            if (end > unsolved)
-                solve_columns(w, unsolved, end - unsolved, factor);
-            basis.solved += end - unsolved;
-        };
         std::array<int, kMaxContacts> begin{};
         for (std::size_t c = 0; c < contacts.size(); ++c) {
-            const int count = (contacts[c].held ? kHeldMoments : kFree)[moment];
             begin[c] = columns;
-            if (contacts[c].kept == KeptColumns::all) {
-                solve_up_to(columns);
-                const std::size_t at = kept_at(contacts, c, known[c], n);
-                std::copy_n(basis.column.data() + at, n * static_cast<std::size_t>(count),
-                            w.y[columns]);
-                std::copy_n(basis.mass_column.data() + at, n * static_cast<std::size_t>(count),
-                            w.z[columns]);
-                unsolved = columns + count;
-            } else {
+            if (contacts[c].kept == KeptColumns::all)
+                recall(contacts, c, moment, basis, columns, w);
+            else
                 loads_of(model, surface, contacts[c], moment, last[c], columns, w);
-            }
-            columns += count;
+            columns += columns_of(contacts[c], moment);
         }
-        solve_up_to(columns);
-        for (std::size_t c = 0; c < contacts.size(); ++c) {
-            const int count = (contacts[c].held ? kHeldMoments : kFree)[moment];
-            const std::size_t at = kept_at(contacts, c, known[c], n);
-            if (contacts[c].kept != KeptColumns::all) {
-                std::copy_n(w.y[begin[c]], n * static_cast<std::size_t>(count),
-                            basis.column.data() + at);
-                std::copy_n(w.z[begin[c]], n * static_cast<std::size_t>(count),
-                            basis.mass_column.data() + at);
-            }
-            last[c] = begin[c];
-            known[c] += count;
-        }
+        solve_new(contacts, moment, begin, factor, w, basis);
+        last = begin;
         blocks[moment] = columns - first;
     }
     return columns;

@@ -46,19 +46,6 @@ struct Items {
     void add(int slot, int column) noexcept { item[count++] = {slot, column}; }
 };
 
-int slot_of(std::span<const BasisContact> contacts, std::size_t c) noexcept {
-    return contacts[c].slot < 0 ? static_cast<int>(c) : contacts[c].slot;
-}
-
-// The first column of a moment among those of its contact.
-int first_of(bool held, int moment) noexcept {
-    const auto& counts = held ? kHeldMoments : kFree;
-    int first = 0;
-    for (int m = 0; m < moment; ++m)
-        first += counts[m];
-    return first;
-}
-
 int moment_of(bool held, int column) noexcept {
     int moment = 0;
     while (moment + 1 < kMoments && column >= first_of(held, moment + 1))
@@ -164,7 +151,7 @@ int gather_columns(std::span<const BasisContact> contacts, const Work& w, Contac
         const int first = columns;
         for (std::size_t c = 0; c < contacts.size(); ++c) {
             const bool held = contacts[c].held;
-            for (int k = 0; k < (held ? kHeldMoments : kFree)[moment]; ++k, ++columns) {
+            for (int k = 0; k < columns_of(contacts[c], moment); ++k, ++columns) {
                 const Item item{slot_of(contacts, c), first_of(held, moment) + k};
                 std::copy_n(kept(basis.column, w.x.n, item), w.x.n, w.x[columns]);
                 std::copy_n(kept(basis.mass_column, w.x.n, item), w.x.n, w.mass_x[columns]);
