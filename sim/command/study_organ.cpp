@@ -51,7 +51,8 @@ void beside_reference(OrganArguments& a, bool depths_given) {
     o.press.depth_m = reference_depths_m(a.organ.depth_mm, depths_given);
     const std::optional<tissue::Tier> tier = tissue::tier_named(a.tier);
     if (!tier)
-        throw std::invalid_argument("--tier " + a.tier + ": want corotated or quadratic");
+        throw std::invalid_argument("--tier " + a.tier +
+                                    ": want linear-compliance, corotated or quadratic");
     o.tier = *tier;
     if (!a.record.empty())
         o.record = a.record;
@@ -120,8 +121,9 @@ void add_study_organ(CLI::App& study) {
     c->add_option("--slide-heading", a->heading, "Its direction")->expected(3);
     c->add_option("--slide", o.slide_mm, "Its length, mm");
     c->add_option("--out", a->out, "Folder for the CSV");
-    c->add_flag("--reference", a->reference,
-                "Beside the reference solver: takes minutes; 10 places to 10 mm unless given");
+    c->add_flag(
+        "--reference", a->reference,
+        "Beside the reference solver: minutes for each place; 10 places to 10 mm unless given");
     c->add_option("--tip-radius", a->tip_mm, "Of the reference study's tip, mm: 1.5 is a 3 mm tip");
     c->add_option("--friction", a->friction, "Of its tip on the skin");
     c->add_option("--edge", a->beside.press.edge_share,
@@ -129,7 +131,8 @@ void add_study_organ(CLI::App& study) {
     c->add_option("--core", a->beside.press.core_share,
                   "How far around it edges are that short, of the radius");
     c->add_option("--step", a->beside.press.step_share, "Its greatest step, of the radius");
-    c->add_option("--tier", a->tier, "Of the trainer's tissue beside it: corotated, quadratic");
+    c->add_option("--tier", a->tier,
+                  "Of the trainer's tissue beside it: linear-compliance, corotated, quadratic");
     c->add_option("--model", a->beside.model, "The organ's mesh for the trainer's tissue");
     c->add_option("--record", a->record,
                   "What the reference has pressed: goes on where it was; else in --out");
