@@ -61,6 +61,7 @@ WindowOptions hidden(int w, int h) {
     options.height_px = h;
     options.visible = false;
     options.wait_for_screen = false;
+    options.adapt = false; // a busy machine would shrink one picture and not the other
     return options;
 }
 
