@@ -24,9 +24,29 @@ bool in_anchor(const Recipe& recipe, const glm::dvec3& p_m) {
            std::any_of(recipe.anchor_boxes.begin(), recipe.anchor_boxes.end(), in_box);
 }
 
+void make_line_anchors(const Recipe& recipe, tissue::RodLine& line) {
+    const auto inside = [&](const glm::dvec3& p_m) { return in_anchor(recipe, p_m); };
+    line.bed_pa = 1e3 * recipe.bed_kpa;
+    if (recipe.hold_length_mm > 0.0) {
+        tissue::hold_line(inside, kMm * recipe.hold_length_mm, line);
+    } else {
+        tissue::fix_line(inside, line);
+    }
+    if (!tissue::has_hold(line)) {
+        throw RecipeError(fmt::format("{}: anchor_sphere and anchor_box hold no part of the rod: "
+                                      "accepted: hold_length_mm and one that meets its line, one "
+                                      "that two nodes in a row lie in, or bed_kpa",
+                                      recipe.name));
+    }
+}
+
 } // namespace
 
 void make_anchors(const Recipe& recipe, tissue::BakedOrgan& organ) {
+    if (tissue::is_rod(organ)) {
+        make_line_anchors(recipe, organ.line);
+        return;
+    }
     const tissue::TetMesh& mesh = organ.mesh;
     organ.anchored.assign(mesh.rest_m.size(), 0);
     organ.bed.clear();

@@ -10,6 +10,7 @@ namespace bake {
 /// Fills organ.anchored and organ.bed for organ.mesh. With a hold length the anchors are an
 /// elastic bed, so that they do not hang on which nodes happen to lie in them; without, the nodes
 /// in them are fixed, which suits blocks whose faces are the anchors.
+/// Of a rod, the springs or fixed nodes of its line, and the bed around it.
 /// Throws RecipeError if nothing, or too little, is held.
 void make_anchors(const Recipe& recipe, tissue::BakedOrgan& organ);
 

@@ -227,6 +227,9 @@ Baked bake(const Recipe& asked, const BakeOptions& options) {
     if (organ.rigid && options.order != 1) {
         throw Refused("scenery has no tetrahedra, so there are none with quadratic shapes");
     }
+    if (asked.rod && options.order != 1) {
+        throw Refused("a tube is a rod, which has no shapes that could be quadratic");
+    }
 
     clock.begin("skin");
     const Surface skin = organ.rigid ? scenery_surface(asked) : body_skin(asked);
@@ -241,6 +244,15 @@ Baked bake(const Recipe& asked, const BakeOptions& options) {
     }
 
     baked.report.edge_mm = recipe.edge_mm;
+    if (recipe.rod) {
+        clock.begin("rod");
+        organ.line = tube_line(std::get<TubeShape>(recipe.shape), kMm * recipe.edge_mm);
+        make_anchors(recipe, organ);
+        baked.report.skin_volume_m3 = volume_m3(skin);
+        baked.report.mesh_volume_m3 = tissue::volume_m3(organ.line);
+        clock.end();
+        return baked;
+    }
     organ.mesh =
         make_mesh(recipe, body_boundary(recipe, skin, clock), clock, options, baked.report);
     make_anchors(recipe, organ);

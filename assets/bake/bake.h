@@ -18,7 +18,7 @@ struct Refused : std::runtime_error {
 };
 
 /// Raise when the same recipe gives another organ than before.
-inline constexpr std::uint64_t kBakeVersion = 2;
+inline constexpr std::uint64_t kBakeVersion = 3;
 
 struct Phase {
     std::string name;

@@ -81,6 +81,10 @@ Recipe parse_recipe(const std::string& text, const std::string& file_name) {
         read_anchors(top, recipe);
         read_quadratic(top, recipe);
     }
+    if (recipe.kind == Kind::tube) {
+        recipe.rod = top.word("inside", {"rod", "tetrahedra"}, "rod") == "rod";
+        recipe.bed_kpa = recipe.rod ? top.number("bed_kpa", 0.0, 1e3, 0.0) : 0.0;
+    }
     if (recipe.kind == Kind::liver || recipe.kind == Kind::box) { // by TetGen
         recipe.quality_ratio = top.number("quality_ratio", 1.05, 10.0, recipe.quality_ratio);
         recipe.quality_dihedral_deg =

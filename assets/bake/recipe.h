@@ -61,6 +61,8 @@ struct Recipe {
     AnyShape shape;
     std::vector<AnchorSphere> anchor_spheres;
     std::vector<AnchorBox> anchor_boxes;
+    bool rod = false;     // a tube that is one, and not tetrahedra
+    double bed_kpa = 0.0; // around all of a rod: what tissue there resists, N/m per m, in kPa
     double hold_length_mm = 0.0; // L of the elastic bed in the anchors; 0: their nodes are fixed
     std::optional<double> quadratic_edge_mm; // of the tetrahedra if their shapes are quadratic
     std::optional<std::array<int, 3>> quadratic_cells; // the same of boxes and sheets with cells

@@ -33,7 +33,17 @@ std::string report_json(const Recipe& recipe, const Baked& baked) {
     j["skin_mm"] = recipe.skin_mm;
     j["skin_vertices"] = organ.surface.rest_m.size();
     j["skin_triangles"] = organ.surface.triangles.size();
-    if (!organ.rigid) {
+    if (tissue::is_rod(organ)) {
+        const auto& line = organ.line;
+        j["edge_mm"] = r.edge_mm;
+        j["nodes"] = line.node_m.size();
+        j["held_nodes"] = std::count(line.held.begin(), line.held.end(), 1);
+        j["hold_npm"] = tissue::hold_npm(line, organ.material.young_pa);
+        j["free_unknowns"] = tissue::make_rod(line, organ.material, glm::dvec3{0.0}).unknowns;
+        j["volume_m3"] = r.mesh_volume_m3;
+        j["skin_volume_m3"] = r.skin_volume_m3;
+        j["volume_change"] = r.mesh_volume_m3 / r.skin_volume_m3 - 1.0;
+    } else if (!organ.rigid) {
         const auto anchored =
             static_cast<std::size_t>(std::count(organ.anchored.begin(), organ.anchored.end(), 1));
         j["order"] = organ.order;

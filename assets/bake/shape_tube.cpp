@@ -132,4 +132,15 @@ tissue::TetMesh tube_mesh(const TubeShape& shape, double edge_m) {
     return mesh;
 }
 
+tissue::RodLine tube_line(const TubeShape& shape, double edge_m) {
+    tissue::RodLine line;
+    for (const Station& at : stations_apart(shape, edge_m)) {
+        line.node_m.push_back(kMm * at.place_mm);
+        line.radius_m.push_back(kMm * radius_mm(shape, at));
+    }
+    line.held.assign(line.node_m.size(), 0);
+    line.hold_m.assign(line.node_m.size(), 0.0);
+    return line;
+}
+
 } // namespace bake

@@ -1,9 +1,11 @@
 // assets/bake/shape_tube.h
 // A vessel or a duct: a round bar along a line, with flat ends. Its cross-sections are polygons
-// that are as large as the circle, so that few sides lose no volume. Called by recipe and bake.
+// that are as large as the circle, so that few sides lose no volume; or the rod along that line.
+// Called by recipe and bake.
 #pragma once
 
 #include "assets/bake/surface.h"
+#include "tissue/rod/rod_line.h"
 
 #include <vector>
 
@@ -23,5 +25,7 @@ inline constexpr double kTightestBend = 1.5;
 Surface tube_surface(const TubeShape& shape, double edge_m);
 /// A node in the middle and a ring around it at every station.
 tissue::TetMesh tube_mesh(const TubeShape& shape, double edge_m);
+/// A node at every station; held by nothing.
+tissue::RodLine tube_line(const TubeShape& shape, double edge_m);
 
 } // namespace bake

@@ -2,6 +2,7 @@
 
 #include "haptics/contact/surface_walk.h"
 #include "tissue/response/mode_shapes.h"
+#include "tissue/response/rod_basis.h"
 
 #include <algorithm>
 #include <glm/geometric.hpp>

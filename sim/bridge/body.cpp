@@ -53,6 +53,8 @@ void fill_law(Body& body) {
         const double r = skin.footprint_radius_m[v];
         const double infinite = std::numeric_limits<double>::infinity();
         body.thinness_1pm[v] = 1.0 / thickness;
+        if (tissue::is_rod(*body.organ))
+            continue; // no kernel is in the rows
         body.normal_mpn[v] = skin.mesh_term_n_m[v] / m.young_pa -
                              tissue::kernel_compliance_mpn(m.young_pa, m.poisson, r, thickness);
         body.tangential_mpn[v] =
@@ -94,12 +96,43 @@ std::shared_ptr<const tissue::BakedOrgan> quadratic_of(const tissue::BakedOrgan&
     return quadratic;
 }
 
+// A rod carries the skin itself: every vertex is a point of it. Nothing of what yields under a tip
+// is in the rod, so that all of it is the local law's, of tissue as thick as the tube.
+std::shared_ptr<const tissue::BakedOrgan> rod_of(const tissue::BakedOrgan& organ) {
+    auto rod = std::make_shared<tissue::BakedOrgan>(organ);
+    tissue::ContactSurface& skin = rod->surface;
+    const auto vertices = static_cast<std::uint32_t>(skin.rest_m.size());
+    rod->anchored.assign(vertices, 0);
+    for (std::uint32_t v = 0; v <= vertices; ++v)
+        skin.row_start.push_back(v);
+    for (std::uint32_t v = 0; v < vertices; ++v) {
+        std::size_t nearest = 0;
+        for (std::size_t i = 1; i < organ.line.node_m.size(); ++i) {
+            if (glm::distance(organ.line.node_m[i], skin.rest_m[v]) <
+                glm::distance(organ.line.node_m[nearest], skin.rest_m[v]))
+                nearest = i;
+        }
+        const double thick_m = 2.0 * organ.line.radius_m[nearest];
+        skin.row_node.push_back(v);
+        skin.row_weight.push_back(1.0);
+        skin.offset_m.emplace_back(0.0);
+        skin.frame_node.push_back({v, v, v});
+        skin.footprint_radius_m.push_back(thick_m);
+        skin.thickness_m.push_back(thick_m);
+        skin.mesh_term_n_m.push_back(0.0);
+        skin.mesh_term_t_m.push_back(0.0);
+    }
+    return rod;
+}
+
 std::shared_ptr<const tissue::BakedOrgan> for_tier(std::shared_ptr<const tissue::BakedOrgan> organ,
                                                    tissue::Tier tier) {
     if (organ->rigid)
         return organ;
     if (tier == tissue::Tier::rigid)
         return scenery_of(*organ);
+    if (tissue::is_rod(*organ))
+        return rod_of(*organ);
     if (tier == tissue::Tier::quadratic && organ->order == 1)
         return quadratic_of(*organ);
     if (tier != tissue::Tier::quadratic && organ->order != 1)
@@ -142,7 +175,12 @@ Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Ma
     fill_tips(body, tip_radius_m);
     fill_law(body);
     tissue::Solid solid =
-        tissue::make_solid(tier, {body.organ->mesh, body.organ->anchored, body.organ->bed},
+        tissue::make_solid(tier,
+                           {.mesh = body.organ->mesh,
+                            .anchored = body.organ->anchored,
+                            .bed = body.organ->bed,
+                            .line = tissue::is_rod(*body.organ) ? &body.organ->line : nullptr,
+                            .skin_m = skin.rest_m},
                            material, glm::dvec3{0.0}, dt_s);
     const int unknowns = tissue::unknowns(solid);
     const auto n = static_cast<std::size_t>(unknowns);

@@ -24,13 +24,29 @@ std::optional<tissue::SparseFactor> rest_factor(const tissue::QuadraticSolid& so
     return factor;
 }
 
+tissue::RodSolid rod_at_rest(const tissue::RodSolid& solid) {
+    tissue::RodSolid rest = solid;
+    rest.state = tissue::rest_state(rest.model.rod);
+    rest.points = tissue::make_points(rest.model.rod, rest.model.rest_m);
+    tissue::linearize(rest.model.rod, rest.state, std::numeric_limits<double>::infinity(),
+                      rest.system);
+    return rest;
+}
+
+bool holds(const tissue::BakedOrgan& organ) {
+    return tissue::has_hold(organ.line) || !organ.bed.empty() ||
+           std::count(organ.anchored.begin(), organ.anchored.end(), 1) >= 3;
+}
+
 } // namespace
 
 bool is_held(const tissue::BakedOrgan& organ, const tissue::Material& material) {
     if (organ.rigid || std::count(organ.anchored.begin(), organ.anchored.end(), 1) >= 3)
         return true;
     constexpr double kSoftest_npm = 1.0 / 5e-3;
-    double bed_npm = 0.0;
+    if (std::count(organ.line.held.begin(), organ.line.held.end(), 1) >= 2)
+        return true;
+    double bed_npm = tissue::hold_npm(organ.line, material.young_pa);
     for (const tissue::BedSample& sample : organ.bed)
         bed_npm += material.young_pa * sample.stiffness_m;
     return bed_npm >= kSoftest_npm;
@@ -39,17 +55,22 @@ bool is_held(const tissue::BakedOrgan& organ, const tissue::Material& material) 
 RestFeel::RestFeel(const Body& body) : body_(body) {
     if (!body.soft)
         return;
-    firm_ = !body.organ->bed.empty() ||
-            std::count(body.organ->anchored.begin(), body.organ->anchored.end(), 1) >= 3;
+    firm_ = holds(*body.organ);
     if (!firm_)
         return;
-    factor_ = std::visit([](const auto& solid) { return rest_factor(solid); }, body.soft->solid);
-    firm_ = factor_.has_value();
+    const tissue::Solid& solid = body.soft->solid;
+    if (const auto* tube = std::get_if<tissue::RodSolid>(&solid))
+        rod_ = rod_at_rest(*tube);
+    else if (const auto* linear = std::get_if<tissue::CorotatedSolid>(&solid))
+        factor_ = rest_factor(*linear);
+    else
+        factor_ = rest_factor(std::get<tissue::QuadraticSolid>(solid));
+    firm_ = rod_.has_value() || factor_.has_value();
     answer_m_.resize(3 * body.soft->motion_m.size());
 }
 
 glm::dmat3 RestFeel::mesh_compliance(const haptics::SurfacePoint& at) {
-    if (!factor_)
+    if (!factor_ && !rod_)
         return glm::dmat3{0.0};
     const std::span<const std::int32_t> dofs = tissue::dofs(body_.soft->solid);
     const tissue::ContactSurface& skin = body_.organ->surface;
@@ -61,7 +82,10 @@ glm::dmat3 RestFeel::mesh_compliance(const haptics::SurfacePoint& at) {
         direction[axis] = 1.0;
         tissue::add_row(dofs, skin, tissue_point(at), direction, 1.0, block.subspan(axis * n, n));
     }
-    factor_->solve(block, 3);
+    if (rod_)
+        tissue::solve(rod_->model.rod, rod_->state, rod_->system, rod_->points, block, 3);
+    else
+        factor_->solve(block, 3);
     glm::dmat3 compliance;
     for (int axis = 0; axis < 3; ++axis) {
         compliance[axis] =

@@ -25,6 +25,7 @@ class RestFeel {
     const Body& body_;
     bool firm_ = true;
     std::optional<tissue::SparseFactor> factor_; // of the stiffness at rest
+    std::optional<tissue::RodSolid> rod_;        // or a tube at rest, linearised for statics
     std::vector<double> answer_m_;
 };
 

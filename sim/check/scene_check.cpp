@@ -1,6 +1,7 @@
 #include "sim/check/scene_check.h"
 
 #include "sim/io/files.h"
+#include "sim/session/rehold.h"
 #include "tasks/exercise/exercise.h"
 
 #include <fmt/format.h>
@@ -16,18 +17,36 @@ std::string mm(const dvec3& p) {
     return fmt::format("({:.1f}, {:.1f}, {:.1f}) mm", 1e3 * p.x, 1e3 * p.y, 1e3 * p.z);
 }
 
+// How much of an organ a hold holds, m^3.
+double held_m3(const tissue::BakedOrgan& body, double length_m) {
+    if (!tissue::is_rod(body))
+        return held_volume_m3(body.bed, length_m);
+    double sum_m = 0.0;
+    for (const double hold_m : body.line.hold_m)
+        sum_m += hold_m;
+    return sum_m * length_m * length_m;
+}
+
+bool holds_some(const DistanceField& field, const tissue::BakedOrgan& body, double length_m) {
+    if (!tissue::is_rod(body))
+        return !bed_of(body.mesh, {field}, length_m).empty();
+    return held_m3(rod_held_by(
+                       body, [&](const dvec3& p) { return field(p) <= 0.0; }, length_m),
+                   length_m) > 0.0;
+}
+
 // What each anchor holds by itself: one that holds nothing is a mistake that the others hide.
 void check_anchors(const LoadedScene& scene, std::size_t index, const TomlTable& table,
                    OrganCheck& organ, std::vector<Finding>& finding) {
     const SceneOrgan& wanted = scene.scene.organ[index];
     const tissue::BakedOrgan& body = *scene.organ[index];
     if (!wanted.anchor.empty())
-        organ.held_volume_m3 = held_volume_m3(body.bed, wanted.hold_length_m);
+        organ.held_volume_m3 = held_m3(body, wanted.hold_length_m);
     const std::vector<DistanceField> fields = anchor_fields(scene, index);
     const std::vector<TomlTable> anchors = table.tables("anchor");
     constexpr std::array<const char*, 4> kKey{"low_mm", "centre_mm", "touching", "region"};
     for (std::size_t a = 0; a < fields.size(); ++a) {
-        if (!bed_of(body.mesh, {fields[a]}, wanted.hold_length_m).empty())
+        if (holds_some(fields[a], body, wanted.hold_length_m))
             continue;
         finding.push_back(
             {"anchor_empty", anchors[a].mention(kKey[wanted.anchor[a].index()]),
@@ -59,9 +78,11 @@ void check_organs(const LoadedScene& scene, std::span<const Solid> solids,
         OrganCheck organ{.name = scene.scene.organ[i].name,
                          .rigid = body.rigid,
                          .held = is_held(body, scene.scene.organ[i].material),
-                         .nodes = body.mesh.rest_m.size(),
+                         .rod = tissue::is_rod(body),
+                         .nodes = body.mesh.rest_m.size() + body.line.node_m.size(),
                          .tets = body.mesh.tets.size(),
-                         .volume_m3 = tissue::volume_m3(body.mesh, body.mesh.rest_m)};
+                         .volume_m3 = tissue::volume_m3(body.mesh, body.mesh.rest_m) +
+                                      tissue::volume_m3(body.line)};
         check_anchors(scene, i, tables[i], organ, out.finding);
         out.organ.push_back(organ);
         for (std::size_t j = 0; j < i; ++j) {

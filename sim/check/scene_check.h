@@ -9,6 +9,7 @@ namespace sim {
 struct OrganCheck {
     std::string name;
     bool rigid = false, held = false;
+    bool rod = false; // a tube without tetrahedra; `nodes` are those of its line
     std::size_t nodes = 0, tets = 0;
     double volume_m3 = 0.0, held_volume_m3 = 0.0; // held: by the scene's anchors, 0 without
 };

@@ -48,6 +48,7 @@ Json check_json(const SceneCheck& check) {
     for (const OrganCheck& o : check.organ) {
         json["organs"].push_back({{"name", o.name},
                                   {"rigid", o.rigid},
+                                  {"rod", o.rod},
                                   {"held", o.held},
                                   {"nodes", o.nodes},
                                   {"tets", o.tets},
@@ -75,7 +76,9 @@ void print(const SceneCheck& check) {
         const std::string what =
             o.rigid
                 ? "rigid"
-                : fmt::format("{} nodes, {} tets, {:.0f} ml, {}", o.nodes, o.tets,
+                : fmt::format("{}, {:.0f} ml, {}",
+                              o.rod ? fmt::format("rod of {} nodes", o.nodes)
+                                    : fmt::format("{} nodes, {} tets", o.nodes, o.tets),
                               1e6 * o.volume_m3,
                               !o.held ? "floats"
                               : o.held_volume_m3 > 0.0

@@ -111,4 +111,12 @@ tissue::BakedOrgan held_by(const tissue::BakedOrgan& organ, std::vector<tissue::
     return held;
 }
 
+tissue::BakedOrgan rod_held_by(const tissue::BakedOrgan& organ,
+                               const std::function<bool(const glm::dvec3&)>& inside,
+                               double length_m) {
+    tissue::BakedOrgan held = organ;
+    tissue::hold_line(inside, length_m, held.line);
+    return held;
+}
+
 } // namespace sim

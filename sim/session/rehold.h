@@ -16,4 +16,9 @@ namespace sim {
 /// leaves the organ afloat.
 tissue::BakedOrgan held_by(const tissue::BakedOrgan& organ, std::vector<tissue::BedSample> bed);
 
+/// A rod whose line is held where `inside` says; a bed around it stays.
+tissue::BakedOrgan rod_held_by(const tissue::BakedOrgan& organ,
+                               const std::function<bool(const glm::dvec3&)>& inside,
+                               double length_m);
+
 } // namespace sim

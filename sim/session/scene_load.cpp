@@ -6,6 +6,7 @@
 #include "sim/io/files.h"
 #include "sim/session/rehold.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace sim {
@@ -74,6 +75,13 @@ void load_regions(SceneOrgan& organ, const ScenePlace& place, const TomlTable& t
     }
 }
 
+std::function<bool(const glm::dvec3&)> inside_of(std::vector<DistanceField> fields) {
+    return [fields = std::move(fields)](const glm::dvec3& p_m) {
+        return std::any_of(fields.begin(), fields.end(),
+                           [&](const DistanceField& field) { return field(p_m) <= 0.0; });
+    };
+}
+
 } // namespace
 
 std::shared_ptr<const tissue::BoundaryTree> rest_surface(const tissue::BakedOrgan& organ) {
@@ -125,6 +133,11 @@ LoadedScene load_organs(Scene scene, ScenePlace place, Mistakes* mistakes) {
         if (organ.anchor.empty() || loaded.organ[i]->rigid)
             continue;
         try {
+            if (tissue::is_rod(*loaded.organ[i])) {
+                loaded.organ[i] = std::make_shared<const tissue::BakedOrgan>(rod_held_by(
+                    *loaded.organ[i], inside_of(anchor_fields(loaded, i)), organ.hold_length_m));
+                continue;
+            }
             for (auto* baked : {&loaded.organ[i], &loaded.quadratic[i]}) {
                 if (*baked)
                     *baked = std::make_shared<const tissue::BakedOrgan>(

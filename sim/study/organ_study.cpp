@@ -79,7 +79,7 @@ OrganStudy run_organ_study(const OrganStudyOptions& o) {
     OrganStudy study;
     const auto organ = load_organ(o.organ);
     Indenter indenter(organ, o.material, organ->tip_radius_max_m);
-    study.nodes = static_cast<int>(organ->mesh.rest_m.size());
+    study.nodes = static_cast<int>(organ->mesh.rest_m.size() + organ->line.node_m.size());
     study.tets = static_cast<int>(organ->mesh.tets.size());
     const auto places = random_places(indenter.body(), o.points, o.seed);
     const auto path = slide_places(indenter.body(), 1e-3 * o.slide_from_mm, o.slide_heading,
@@ -91,7 +91,7 @@ OrganStudy run_organ_study(const OrganStudyOptions& o) {
         return study;
     const auto other = load_organ(o.other);
     Indenter second(other, o.material, other->tip_radius_max_m);
-    study.other_nodes = static_cast<int>(other->mesh.rest_m.size());
+    study.other_nodes = static_cast<int>(other->mesh.rest_m.size() + other->line.node_m.size());
     study.other_tets = static_cast<int>(other->mesh.tets.size());
     study.other_point = press_all(second, places, o.depth_mm);
     study.other_slide = press_all(second, path, o.depth_mm);

@@ -46,6 +46,9 @@ ReferencePress press_reference(const tissue::BakedOrgan& organ, const tissue::Ma
                                const dvec3& place_m, const dvec3& into,
                                const ReferencePressOptions& o,
                                const std::function<void(double, double)>& progress) {
+    if (tissue::is_rod(organ))
+        throw std::invalid_argument("reference press: '" + organ.name +
+                                    "' is a rod and has no tetrahedra");
     const bool fixed = std::count(organ.anchored.begin(), organ.anchored.end(), 1) >= 3;
     if (organ.rigid || (organ.bed.empty() && !fixed))
         throw std::invalid_argument("reference press: nothing holds the organ '" + organ.name +

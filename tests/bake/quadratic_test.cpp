@@ -83,6 +83,7 @@ TEST_CASE(
          {std::pair{"spleen", 7.0}, std::pair{"artery", 2.0}, std::pair{"gallbladder", 4.5}}) {
         CAPTURE(name);
         auto recipe = recipe_of(name);
+        recipe.rod = false;
         const auto coarse = quadratic(recipe).organ;
         CHECK(coarse.mesh.tets.size() >= 150);
         CHECK(coarse.mesh.tets.size() <= 450);
@@ -119,6 +120,7 @@ TEST_CASE("quadratic organ: a flap away from its hinge is as stiff as a much fin
 TEST_CASE("quadratic organ: linear tetrahedra lock where these do not") {
     // negative control of the gates: twice as many tets, a tube half again as stiff
     auto recipe = recipe_of("artery");
+    recipe.rod = false;
     const auto linear = bake::bake(recipe, {}).organ;
     recipe.quadratic_edge_mm = 2.0;
     CHECK(stiffness_ratios(linear, quadratic(recipe).organ, kTip_m, 1).mean > 1.4);

@@ -58,10 +58,10 @@ struct Bench {
     }
     const sim::FemContact& contact() const { return rig.contact[1]; }
     bool fem_touches() const { return rig.memory[1].touching; }
-    // mean of the artery's nodes below the tip
+    // mean of the nodes of the artery's line below the tip
     glm::dvec3 vessel_velocity_mps() const {
-        const tissue::CorotatedState& state =
-            std::get<tissue::CorotatedSolid>(rig.bodies[kArtery].soft->solid).state;
+        const tissue::RodState& state =
+            std::get<tissue::RodSolid>(rig.bodies[kArtery].soft->solid).state;
         glm::dvec3 sum{0.0};
         double count = 0.0;
         for (std::size_t v = 0; v < state.position_m.size(); ++v)
@@ -113,11 +113,15 @@ Worst press(Bench& bench, double tip_radius_m, double side_m, double across_mps)
         const auto foot = sim::nearest_on(body, contact.last_tip_m).at;
         worst.away_m = std::max(worst.away_m, glm::distance(sim::place_on(body, foot),
                                                             sim::place_on(body, contact.at)));
+        // the force is of where the vessel was a step ago, so much of its roundness away
+        const double turned_rad =
+            std::abs(speed_mps) * 1e-3 * kPeriod / body.organ->line.radius_m.front();
         if (force_n > kFelt_n)
             worst.angle_rad = std::max(
                 worst.angle_rad,
                 std::acos(std::min(1.0, glm::dot(contact.force_n, sim::normal_on(body, foot)) /
-                                            force_n)));
+                                            force_n)) -
+                    turned_rad);
     }
     return worst;
 }

@@ -51,6 +51,27 @@ tissue::BakedOrgan quadratic_organ() {
     return o;
 }
 
+// A straight tube of three nodes in a skin of four faces.
+tissue::BakedOrgan rod_organ() {
+    tissue::BakedOrgan o = small_organ();
+    o.mesh = {};
+    o.anchored.clear();
+    o.bed.clear();
+    const auto skin = o.surface;
+    o.surface = {};
+    o.surface.rest_m = skin.rest_m;
+    o.surface.triangles = skin.triangles;
+    o.surface.neighbours = skin.neighbours;
+    o.line = {.node_m = {{0, 0, 0}, {0.01, 0, 0}, {0.02, 0.001, 0}},
+              .radius_m = {2e-3, 3e-3, 4e-3},
+              .held = {1, 1, 0},
+              .hold_m = {0.0, 0.25, 0.5},
+              .bed_pa = 1500.0};
+    return o;
+}
+
+constexpr std::size_t kLineSize = 4 * 8 + 8; // of an organ without a line: four counts and the bed
+
 constexpr std::size_t kOrderAt = 8 + 4 + 8 + 5 + 1; // magic, version, "probe", rigid
 
 // FNV-1a, 64 bit (Fowler, Noll & Vo 1991), written a second time.
@@ -172,7 +193,7 @@ TEST_CASE("baked organ: the file is little endian and ends with the FNV-1a hash 
         head.push_back(static_cast<char>(bytes[i]));
     }
     CHECK(head == "TROCORGN");
-    CHECK(bytes[8] == std::byte{3}); // version
+    CHECK(bytes[8] == std::byte{4}); // version
     CHECK(bytes[11] == std::byte{0});
     CHECK(bytes[12] == std::byte{5}); // length of the name
     CHECK(bytes[20] == std::byte{'p'});
@@ -284,11 +305,11 @@ TEST_CASE("baked organ: a bed in a tetrahedron that is not there is refused") {
 
 TEST_CASE("baked organ: a file of another version is refused by its number") {
     auto bytes = tissue::write_organ(small_organ());
-    for (const int version : {4, 1}) {
+    for (const int version : {5, 1}) {
         bytes[8] = static_cast<std::byte>(version);
         sign(bytes);
         CHECK(refusal(bytes).find("version " + std::to_string(version) +
-                                  ", this build reads versions 2 and 3") != std::string::npos);
+                                  ", this build reads versions 2 to 4") != std::string::npos);
     }
 }
 
@@ -296,12 +317,72 @@ TEST_CASE("baked organ: a file of version 2 is read as order 1") {
     auto organ = small_organ();
     auto bytes = tissue::write_organ(organ);
     bytes[8] = std::byte{2};
+    bytes.erase(bytes.end() - kHashSize - kLineSize, bytes.end() - kHashSize);
     bytes.erase(bytes.begin() + kOrderAt, bytes.begin() + kOrderAt + 4);
     sign(bytes);
     const auto read = tissue::read_organ(bytes);
     CHECK(read.order == 1);
     CHECK(read.tip_radius_max_m == organ.tip_radius_max_m);
     CHECK(tissue::write_organ(read) == tissue::write_organ(organ)); // all else is there
+}
+
+TEST_CASE("baked organ: a file of version 3 is read as a body without a rod") {
+    const auto organ = quadratic_organ();
+    auto bytes = tissue::write_organ(organ);
+    bytes[8] = std::byte{3};
+    bytes.erase(bytes.end() - kHashSize - kLineSize, bytes.end() - kHashSize);
+    sign(bytes);
+    const auto read = tissue::read_organ(bytes);
+    CHECK_FALSE(tissue::is_rod(read));
+    CHECK(tissue::write_organ(read) == tissue::write_organ(organ));
+}
+
+TEST_CASE("baked organ: a tube comes back as the rod it was, and its skin has no rows") {
+    const auto organ = rod_organ();
+    const auto bytes = tissue::write_organ(organ);
+    const auto read = tissue::read_organ(bytes);
+    CHECK(tissue::is_rod(read));
+    CHECK(read.line.node_m == organ.line.node_m);
+    CHECK(read.line.radius_m == organ.line.radius_m);
+    CHECK(read.line.held == organ.line.held);
+    CHECK(read.line.hold_m == organ.line.hold_m);
+    CHECK(read.line.bed_pa == organ.line.bed_pa);
+    CHECK(tissue::write_organ(read) == bytes);
+}
+
+TEST_CASE("baked organ: a rod that cannot be stepped is refused, whatever its bytes say") {
+    const auto refused = [](auto change) {
+        auto organ = rod_organ();
+        change(organ);
+        return refusal(tissue::write_organ(organ));
+    };
+    CHECK(refused([](auto& o) { o.line.radius_m.pop_back(); }).find("radii of the line") !=
+          std::string::npos);
+    CHECK(refused([](auto& o) { o.line.held[1] = 2; }).find("held node of the line") !=
+          std::string::npos);
+    CHECK(refused([](auto& o) { o.line.radius_m[1] = -3e-3; }).find("radius_m") !=
+          std::string::npos);
+    CHECK(refused([](auto& o) { o.line.node_m[1] = o.line.node_m[0]; }).find("at one place") !=
+          std::string::npos);
+    CHECK(refused([](auto& o) { o.line.hold_m[2] = -1.0; }).find("spring 2") != std::string::npos);
+    CHECK(refused([](auto& o) { o.line.node_m.resize(1); }) != "");
+    CHECK(refused([](auto& o) { o.rigid = true; }).find("line of a rod") != std::string::npos);
+    CHECK(refused([](auto& o) { o.mesh.rest_m = {{0, 0, 0}}; }) != "");
+    // any byte changed, signed anew: refused or good to step
+    const auto bytes = tissue::write_organ(rod_organ());
+    for (std::size_t at = 12; at + kHashSize < bytes.size(); ++at) {
+        for (const int flip : {1, 0x80, 0xFF}) {
+            auto bad = bytes;
+            bad[at] ^= static_cast<std::byte>(flip);
+            sign(bad);
+            try {
+                const auto read = tissue::read_organ(bad);
+                if (tissue::is_rod(read))
+                    CHECK_NOTHROW(tissue::make_rod(read.line, read.material, glm::dvec3{0.0}));
+            } catch (const std::invalid_argument&) {
+            }
+        }
+    }
 }
 
 TEST_CASE("baked organ: rows of order 2 may name nodes on edges, frames and tets may not") {

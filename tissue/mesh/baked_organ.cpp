@@ -1,8 +1,8 @@
-// The file format of a baked organ, version 3. All little endian, doubles as IEEE 754 bits:
+// The file format of a baked organ, version 4. All little endian, doubles as IEEE 754 bits:
 //   magic "TROCORGN", u32 version, then the fields of BakedOrgan in the order of write_fields(),
 //   each list as u64 count and its items, then u64 FNV-1a of everything before it.
-// Version 2 has no order, which is 1. One list of fields serves both directions and both versions,
-// so that they cannot drift apart.
+// Version 3 has no line of a rod, version 2 no order, which is 1. One list of fields serves both
+// directions and all versions, so that they cannot drift apart.
 #include "tissue/mesh/baked_organ.h"
 
 #include "tissue/mesh/quadratic_mesh.h"
@@ -17,7 +17,7 @@ namespace tissue {
 namespace {
 
 constexpr std::string_view kMagic = "TROCORGN";
-constexpr std::uint32_t kVersion = 3, kOldestVersion = 2;
+constexpr std::uint32_t kVersion = 4, kOldestVersion = 2, kOrderSince = 3, kLineSince = 4;
 constexpr std::size_t kHashSize = 8;
 constexpr std::size_t kBedSampleSize = 4 + 5 * 8;
 
@@ -145,7 +145,7 @@ class Reader {
 /// `start` (may be null) receives where each list begins, for messages.
 struct ListStarts {
     std::size_t order = 0, anchored = 0, bed = 0, tets = 0, triangles = 0, neighbours = 0,
-                row_start = 0, row_node = 0, frame_node = 0, sizes = 0;
+                row_start = 0, row_node = 0, frame_node = 0, sizes = 0, line = 0;
 };
 
 /// The fields as they follow in the file. `Organ` is const for a Writer.
@@ -162,7 +162,7 @@ ListStarts fields(Stream& s, Organ& o, std::uint32_t version = kVersion) {
     s.list(o.name);
     s.item(o.rigid);
     at.order = here();
-    if (version > kOldestVersion) {
+    if (version >= kOrderSince) {
         s.item(o.order);
     }
     s.item(o.tip_radius_max_m);
@@ -199,6 +199,14 @@ ListStarts fields(Stream& s, Organ& o, std::uint32_t version = kVersion) {
     s.list(o.surface.thickness_m);
     s.list(o.surface.mesh_term_n_m);
     s.list(o.surface.mesh_term_t_m);
+    at.line = here();
+    if (version >= kLineSince) {
+        s.list(o.line.node_m);
+        s.list(o.line.radius_m);
+        s.list(o.line.held);
+        s.list(o.line.hold_m);
+        s.item(o.line.bed_pa);
+    }
     return at;
 }
 
@@ -236,6 +244,26 @@ void check_rows(const ContactSurface& s, std::uint32_t nodes, const ListStarts& 
     check_indices(std::span(&s.row_node, 1), 0U, nodes, "node of a row", at.row_node);
 }
 
+void check_line(const BakedOrgan& o, const ListStarts& at) {
+    const RodLine& line = o.line;
+    if (!is_rod(o) && line.radius_m.empty() && line.held.empty() && line.hold_m.empty()) {
+        return;
+    }
+    if (o.rigid || o.order != 1 || !o.mesh.tets.empty() || !o.bed.empty()) {
+        fail("the line of a rod in a body that is rigid, quadratic or of tetrahedra", at.line);
+    }
+    check_size(line.radius_m.size(), line.node_m.size(), "radii of the line", at.line);
+    check_size(line.held.size(), line.node_m.size(), "held nodes of the line", at.line);
+    check_size(line.hold_m.size(), line.node_m.size(), "springs of the line", at.line);
+    check_indices(std::span(&line.held, 1), std::uint8_t{0}, std::uint8_t{2},
+                  "held node of the line", at.line);
+    try { // radii, springs, and a way that can be stepped
+        make_rod(line, o.material, glm::dvec3{0.0});
+    } catch (const std::invalid_argument& e) {
+        fail(std::string("the line of a rod: ") + e.what(), at.line);
+    }
+}
+
 /// Everything that code reading the organ indexes with or relies on.
 void check_organ(const BakedOrgan& o, const ListStarts& at) {
     const auto nodes = static_cast<std::uint32_t>(o.mesh.rest_m.size());
@@ -261,11 +289,13 @@ void check_organ(const BakedOrgan& o, const ListStarts& at) {
     check_indices(s.neighbours, -1, static_cast<std::int32_t>(s.triangles.size()),
                   "neighbouring triangle", at.neighbours);
 
-    const std::size_t rows = o.rigid ? 0 : vertices;
-    if (o.rigid) {
-        check_size(nodes, 0, "nodes of a rigid body", at.tets);
+    check_line(o, at);
+    const bool plain = o.rigid || is_rod(o); // a skin without rows
+    const std::size_t rows = plain ? 0 : vertices;
+    if (plain) {
+        check_size(nodes, 0, o.rigid ? "nodes of a rigid body" : "nodes of a rod", at.tets);
     }
-    check_size(s.row_start.size(), o.rigid ? 0 : rows + 1, "starts of the rows", at.row_start);
+    check_size(s.row_start.size(), plain ? 0 : rows + 1, "starts of the rows", at.row_start);
     check_size(s.row_weight.size(), s.row_node.size(), "weights of the rows", at.row_node);
     check_size(s.offset_m.size(), rows, "offsets", at.row_node);
     check_size(s.frame_node.size(), rows, "frames", at.frame_node);
@@ -301,7 +331,7 @@ BakedOrgan read_organ(std::span<const std::byte> bytes) {
     const auto version = head.integer<std::uint32_t>();
     if (version < kOldestVersion || version > kVersion) {
         fail("version " + std::to_string(version) + ", this build reads versions " +
-                 std::to_string(kOldestVersion) + " and " + std::to_string(kVersion),
+                 std::to_string(kOldestVersion) + " to " + std::to_string(kVersion),
              kMagic.size());
     }
     if (bytes.size() - head.at() < kHashSize) {

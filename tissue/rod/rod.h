@@ -3,6 +3,7 @@
 // bends and twists. Called by the tissue loop, one thread per state and system; made at setup.
 //   E = sum over edges of EA/(2 L) (|e| - L)^2
 //     + sum over inner nodes of (EI |kappa - kappa0|^2 + GJ (twist - twist0)^2)/(2 l)
+//     + sum of springs to the rest place, of nodes and of edges' turn about themselves
 // after Bergou et al. 2008 and 2010, without shear (Kirchhoff); l is half of the two edges' rest
 // lengths, as far as they are free. What is not straight at rest stays so, and a tube curved at
 // rest twists when it bends: hence twist, though the cross-section is round.
@@ -49,6 +50,8 @@ struct RodModel {
     std::vector<double> bend_length_m;   // per node, l; 0: does not bend there
     std::vector<double> mass_kg;         // per node
     std::vector<double> inertia_kgm2;    // per edge
+    std::vector<double> hold_npm;        // per node, to its rest place, all directions alike
+    std::vector<double> hold_turn_nm;    // per edge, against its turn about itself
     std::vector<std::int32_t> dof, spin; // first unknown of a node, that of an edge; -1: held
     std::vector<double> mass;            // per unknown: kg, kg m^2
     std::vector<double> weight_n;        // per unknown
@@ -59,15 +62,20 @@ struct RodModel {
 /// between two held nodes does not turn, bend or twist, so a clamp is two of them, and what is free
 /// begins at the second. Throws std::invalid_argument naming the node or value: fewer than two
 /// nodes, two in a row at one place, a fold by more than 150 degrees, a size that does not fit, a
-/// section that is not above 0.
+/// section that is not above 0. No springs hold it: see hold_by().
 RodModel make_rod(std::span<const glm::dvec3> node_m, std::span<const RodSection> section,
                   const Material& material, std::span<const std::uint8_t> held,
                   const glm::dvec3& gravity_mps2);
+
+/// Springs to the rest place: per node, and per edge against turning about itself. Throws
+/// std::invalid_argument for a size that does not fit or a value that is negative or not finite.
+void hold_by(std::span<const double> npm, std::span<const double> turn_nm, RodModel& model);
 
 struct RodState {
     std::vector<glm::dvec3> position_m, velocity_mps;
     std::vector<RodFrame> frame;    // per edge
     std::vector<double> spin_radps; // per edge
+    std::vector<double> turn_rad;   // per edge, about itself since rest
 };
 RodState rest_state(const RodModel& model);
 

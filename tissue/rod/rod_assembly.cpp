@@ -145,10 +145,47 @@ void add_bend(const RodModel& model, const RodState& state, std::size_t i, bool 
     }
 }
 
+// Springs to the rest place and against turning: the sum of their energies.
+double held_energy_j(const RodModel& model, const RodState& state) noexcept {
+    double sum_j = 0.0;
+    for (std::size_t i = 0; i < model.rest_m.size(); ++i) {
+        const dvec3 away_m = state.position_m[i] - model.rest_m[i];
+        sum_j += 0.5 * model.hold_npm[i] * glm::dot(away_m, away_m);
+    }
+    for (std::size_t e = 0; e < model.length_m.size(); ++e)
+        sum_j += 0.5 * model.hold_turn_nm[e] * state.turn_rad[e] * state.turn_rad[e];
+    return sum_j;
+}
+
+void add_held_forces(const RodModel& model, const RodState& state,
+                     std::span<double> internal_n) noexcept {
+    for (std::size_t i = 0; i < model.rest_m.size(); ++i) {
+        for (int k = 0; k < 3 && model.dof[i] >= 0; ++k)
+            internal_n[static_cast<std::size_t>(model.dof[i] + k)] +=
+                model.hold_npm[i] * (state.position_m[i][k] - model.rest_m[i][k]);
+    }
+    for (std::size_t e = 0; e < model.length_m.size(); ++e) {
+        if (model.spin[e] >= 0)
+            internal_n[static_cast<std::size_t>(model.spin[e])] +=
+                model.hold_turn_nm[e] * state.turn_rad[e];
+    }
+}
+
+void add_held_tangent(const RodModel& model, BandMatrix& tangent) noexcept {
+    for (std::size_t i = 0; i < model.rest_m.size(); ++i) {
+        for (int k = 0; k < 3 && model.dof[i] >= 0; ++k)
+            tangent.value[tangent.at(model.dof[i] + k, model.dof[i] + k)] += model.hold_npm[i];
+    }
+    for (std::size_t e = 0; e < model.length_m.size(); ++e) {
+        if (model.spin[e] >= 0)
+            tangent.value[tangent.at(model.spin[e], model.spin[e])] += model.hold_turn_nm[e];
+    }
+}
+
 } // namespace
 
 double elastic_energy_j(const RodModel& model, const RodState& state) noexcept {
-    double sum_j = 0.0;
+    double sum_j = held_energy_j(model, state);
     for (std::size_t e = 0; e < model.length_m.size(); ++e) {
         const double longer_m = glm::length(edge_m(state, e)) - model.length_m[e];
         sum_j += 0.5 * model.section[e].stretch_n / model.length_m[e] * longer_m * longer_m;
@@ -166,6 +203,7 @@ double elastic_energy_j(const RodModel& model, const RodState& state) noexcept {
 void elastic_forces(const RodModel& model, const RodState& state,
                     std::span<double> internal_n) noexcept {
     std::fill(internal_n.begin(), internal_n.end(), 0.0);
+    add_held_forces(model, state, internal_n);
     for (std::size_t e = 0; e < model.length_m.size(); ++e) {
         const double pull_n =
             model.section[e].stretch_n * (glm::length(edge_m(state, e)) / model.length_m[e] - 1.0);
@@ -198,6 +236,7 @@ void elastic_forces(const RodModel& model, const RodState& state,
 void elastic_tangent(const RodModel& model, const RodState& state, bool exact,
                      BandMatrix& tangent) noexcept {
     std::fill(tangent.value.begin(), tangent.value.end(), 0.0);
+    add_held_tangent(model, tangent);
     for (std::size_t e = 0; e < model.length_m.size(); ++e)
         add_stretch(model, state, e, exact, tangent);
     for (std::size_t i = 1; i + 1 < model.rest_m.size(); ++i) {

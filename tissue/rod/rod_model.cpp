@@ -130,11 +130,31 @@ RodModel make_rod(std::span<const dvec3> node_m, std::span<const RodSection> sec
     fixed.resize(node_m.size(), 0);
     add_masses(fixed, model);
     number_unknowns(fixed, gravity_mps2, model);
+    model.hold_npm.assign(node_m.size(), 0.0);
+    model.hold_turn_nm.assign(model.length_m.size(), 0.0);
     return model;
+}
+
+void hold_by(std::span<const double> npm, std::span<const double> turn_nm, RodModel& model) {
+    if (npm.size() != model.rest_m.size() || turn_nm.size() != model.length_m.size())
+        throw std::invalid_argument(std::to_string(npm.size()) + " and " +
+                                    std::to_string(turn_nm.size()) + " springs for " +
+                                    std::to_string(model.rest_m.size()) + " nodes");
+    for (const std::span<const double> list : {npm, turn_nm}) {
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            if (!(list[i] >= 0.0 && std::isfinite(list[i])))
+                throw std::invalid_argument("spring " + std::to_string(i) + " = " +
+                                            std::to_string(list[i]) +
+                                            ": must be finite and not negative");
+        }
+    }
+    model.hold_npm.assign(npm.begin(), npm.end());
+    model.hold_turn_nm.assign(turn_nm.begin(), turn_nm.end());
 }
 
 RodState rest_state(const RodModel& model) {
     return {model.rest_m, std::vector<dvec3>(model.rest_m.size(), dvec3{0.0}), model.rest_frame,
+            std::vector<double>(model.rest_frame.size(), 0.0),
             std::vector<double>(model.rest_frame.size(), 0.0)};
 }
 

@@ -84,6 +84,7 @@ bool search(const RodModel& model, std::span<const double> load_n, std::span<con
     for (double share = 1.0; share > 1e-5; share *= 0.5) {
         s.trial.position_m = state.position_m;
         s.trial.frame = state.frame;
+        s.trial.turn_rad = state.turn_rad;
         for (size_t i = 0; i < way.size(); ++i) {
             s.moved[i] += (share - done) * way[i];
             s.scratch[i] = share * way[i];
@@ -94,6 +95,7 @@ bool search(const RodModel& model, std::span<const double> load_n, std::span<con
         if (now_j <= before_j + 1e-4 * share * slope_j + rounding_j) {
             std::swap(state.position_m, s.trial.position_m);
             std::swap(state.frame, s.trial.frame);
+            std::swap(state.turn_rad, s.trial.turn_rad);
             return true;
         }
     }
@@ -170,6 +172,7 @@ void move(const RodModel& model, std::span<const double> du, RodState& state) no
             length_m > 1e-9 * model.length_m[e] ? along / length_m : state.frame[e].tangent;
         const double turn_rad = model.spin[e] < 0 ? 0.0 : du[static_cast<size_t>(model.spin[e])];
         state.frame[e] = moved(state.frame[e], t, turn_rad);
+        state.turn_rad[e] += turn_rad;
     }
 }
 

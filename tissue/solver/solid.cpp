@@ -53,6 +53,16 @@ QuadraticSolid make_quadratic_tets(const SolidMesh& mesh, const Material& materi
             .refactoring = std::move(refactoring)};
 }
 
+RodSolid make_tube(Tier tier, const SolidMesh& mesh, const Material& material,
+                   const glm::dvec3& gravity_mps2, double dt_s) {
+    RodBody model = make_rod_body(*mesh.line, mesh.skin_m, material, gravity_mps2);
+    RodState state = rest_state(model.rod);
+    RodSystem system = make_system(model.rod);
+    linearize(model.rod, state, dt_s, system);
+    RodPoints points = make_points(model.rod, mesh.skin_m);
+    return {std::move(model), std::move(state), std::move(system), std::move(points), tier};
+}
+
 double largest(std::span<const double> values) noexcept {
     double most = 0.0;
     for (const double v : values)
@@ -96,6 +106,12 @@ SolidReport motion(QuadraticSolid& s, bool touched, std::span<const double> load
             .warped = linear.projected};
 }
 
+SolidReport motion(RodSolid& s, bool, std::span<const double> load_n,
+                   std::span<double> du) noexcept {
+    free_motion(s.model.rod, s.state, s.system, load_n, s.points, du);
+    return {.warped = s.system.projected};
+}
+
 double solve_block(CorotatedSolid& s, double, std::span<const double>, std::span<double> block,
                    int columns) noexcept {
     s.system.factor.solve(block, columns);
@@ -110,6 +126,12 @@ double solve_block(QuadraticSolid& s, double tolerance, std::span<const double> 
         solve_columns(s.model, options, s.system, block, columns, {}, first);
     s.most_iterations = std::max(s.most_iterations, report.iterations);
     return report.relative_residual;
+}
+
+double solve_block(RodSolid& s, double, std::span<const double>, std::span<double> block,
+                   int columns) noexcept {
+    solve(s.model.rod, s.state, s.system, s.points, block, columns);
+    return 0.0;
 }
 
 SolidReport end(CorotatedSolid& s, std::span<const double> load_n, double relinearise_m,
@@ -135,6 +157,9 @@ SolidReport end(CorotatedSolid& s, std::span<const double> load_n, double reline
             .new_tangent = true};
 }
 
+// What rests on the tangent alone may be that old; forces are exact in every step.
+constexpr double kOld = 5.0;
+
 // A factor of where the body is, once solves take long with the one of before: begun when they do,
 // taken so many steps later. Both are counted, never timed, so that runs repeat.
 void renew_factor(QuadraticSolid& s) noexcept {
@@ -157,9 +182,20 @@ SolidReport end(QuadraticSolid& s, std::span<const double> load_n, double reline
     advance(s.model, s.system, du, s.state);
     renew_factor(s);
     s.drift_m += largest(du);
-    // forces are exact in every step: only what rests on the tangent waits for a new one
-    constexpr double kOld = 5.0;
     report.new_tangent = s.drift_m > kOld * relinearise_m;
+    if (report.new_tangent)
+        s.drift_m = 0.0;
+    return report;
+}
+
+SolidReport end(RodSolid& s, std::span<const double> load_n, double relinearise_m,
+                std::span<double> du) noexcept {
+    const RodReport made = end_step(s.model.rod, load_n, {}, s.points, du, s.system, s.state);
+    s.drift_m += largest(du);
+    const SolidReport report{.residual = made.relative_residual,
+                             .iterations = made.iterations,
+                             .warped = made.projected,
+                             .new_tangent = s.drift_m > kOld * relinearise_m};
     if (report.new_tangent)
         s.drift_m = 0.0;
     return report;
@@ -172,11 +208,28 @@ double peak_pa(const QuadraticSolid& s) noexcept {
     return peak_von_mises_pa(s.model, s.system);
 }
 
+double peak_pa(const RodSolid& s) noexcept {
+    return peak_von_mises_pa(s.model.rod, s.state);
+}
+
 double energy_j(const CorotatedSolid& s) noexcept {
     return elastic_energy_j(s.model, s.state);
 }
 double energy_j(const QuadraticSolid& s) noexcept {
     return s.system.energy_j;
+}
+double energy_j(const RodSolid& s) noexcept {
+    return s.system.energy_j;
+}
+
+std::span<const glm::dvec3> nodes_at_rest_m(const CorotatedSolid& s) noexcept {
+    return s.model.mesh.rest_m;
+}
+std::span<const glm::dvec3> nodes_at_rest_m(const QuadraticSolid& s) noexcept {
+    return s.model.mesh.rest_m;
+}
+std::span<const glm::dvec3> nodes_at_rest_m(const RodSolid& s) noexcept {
+    return s.model.rest_m;
 }
 
 } // namespace
@@ -193,6 +246,8 @@ Solid make_solid(Tier tier, const SolidMesh& mesh, const Material& material,
                  const glm::dvec3& gravity_mps2, double dt_s) {
     if (!(dt_s > 0.0))
         throw std::invalid_argument("dt_s = " + std::to_string(dt_s) + ": must be greater than 0");
+    if (mesh.line != nullptr && tier != Tier::rigid)
+        return make_tube(tier, mesh, material, gravity_mps2, dt_s);
     switch (tier) {
     case Tier::linear:
         return make_linear_tets(true, mesh, material, gravity_mps2, dt_s);
@@ -209,6 +264,8 @@ Solid make_solid(Tier tier, const SolidMesh& mesh, const Material& material,
 Tier tier_of(const Solid& solid) noexcept {
     if (const auto* s = std::get_if<CorotatedSolid>(&solid))
         return s->linear ? Tier::linear : Tier::corotated;
+    if (const auto* s = std::get_if<RodSolid>(&solid))
+        return s->tier;
     return Tier::quadratic;
 }
 
@@ -226,11 +283,12 @@ std::span<const std::int32_t> dofs(const Solid& solid) noexcept {
 }
 
 std::span<const glm::dvec3> rest_m(const Solid& solid) noexcept {
-    return std::visit(
-        [](const auto& s) { return std::span<const glm::dvec3>(s.model.mesh.rest_m); }, solid);
+    return std::visit([](const auto& s) { return nodes_at_rest_m(s); }, solid);
 }
 
 std::span<const glm::dvec3> position_m(const Solid& solid) noexcept {
+    if (const auto* s = std::get_if<RodSolid>(&solid))
+        return s->points.position_m;
     return std::visit([](const auto& s) { return std::span<const glm::dvec3>(s.state.position_m); },
                       solid);
 }
@@ -259,6 +317,10 @@ void stop(Solid& solid) noexcept {
         solid);
     if (auto* s = std::get_if<CorotatedSolid>(&solid))
         s->state.recovering = false;
+    if (auto* s = std::get_if<RodSolid>(&solid)) {
+        std::fill(s->state.spin_radps.begin(), s->state.spin_radps.end(), 0.0);
+        std::fill(s->system.velocity.begin(), s->system.velocity.end(), 0.0);
+    }
     if (auto* s = std::get_if<QuadraticSolid>(&solid))
         std::fill(s->state.gain_mps.begin(), s->state.gain_mps.end(), glm::dvec3{0.0});
 }

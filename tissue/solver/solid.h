@@ -10,11 +10,13 @@
 //   corotated  linear tetrahedra that turn, tissue/solver/corotated.h. Locks where it bends and
 //              towards nu = 0.5.
 //   quadratic  ten-node neo-Hooke, tissue/solver/quadratic.h. Does not lock.
+// A tube is a rod in each of them (rod_solid.h); its "nodes" below are the points of its skin.
 #pragma once
 
 #include "tissue/solver/chord.h"
 #include "tissue/solver/descent.h"
 #include "tissue/solver/quadratic_refactor.h"
+#include "tissue/solver/rod_solid.h"
 
 #include <memory>
 #include <optional>
@@ -55,19 +57,31 @@ struct QuadraticSolid {
     double drift_m = 0.0; // how far anything moved since its tangent was said to be new
 };
 
-using Solid = std::variant<CorotatedSolid, QuadraticSolid>;
+struct RodSolid {
+    RodBody model;
+    RodState state;
+    RodSystem system;
+    RodPoints points;
+    Tier tier = Tier::linear; // that was asked for
+    double drift_m = 0.0;     // as above
+};
 
-/// What is made of an organ: linear tetrahedra, which nodes are fixed, what holds the rest.
+using Solid = std::variant<CorotatedSolid, QuadraticSolid, RodSolid>;
+
+/// What is made of an organ: linear tetrahedra, which nodes are fixed, what holds the rest; or the
+/// line of a tube and its skin.
 struct SolidMesh {
     const TetMesh& mesh;
-    std::span<const std::uint8_t> anchored; // a byte per node; may be empty
-    std::span<const BedSample> bed;         // may be empty
+    std::span<const std::uint8_t> anchored{}; // a byte per node; may be empty
+    std::span<const BedSample> bed{};         // may be empty
+    const RodLine* line = nullptr;            // if any, instead of the tetrahedra
+    std::span<const glm::dvec3> skin_m{};     // of a tube
 };
 
 /// The corners of quadratic tetrahedra keep their numbers, mid-edge nodes follow (quadratic_mesh.h)
-/// and are fixed where both ends are. Throws as make_corotated(), make_quadratic() do, and
-/// std::invalid_argument for the rigid tier or a step that is not above 0. An infinite one is that
-/// of statics, which quadratic bodies refuse.
+/// and are fixed where both ends are. Throws as make_corotated(), make_quadratic(), make_rod() do,
+/// and std::invalid_argument for the rigid tier or a step that is not above 0. An infinite one is
+/// that of statics, which quadratic bodies refuse.
 Solid make_solid(Tier tier, const SolidMesh& mesh, const Material& material,
                  const glm::dvec3& gravity_mps2, double dt_s);
 
