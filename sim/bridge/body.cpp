@@ -97,7 +97,9 @@ std::shared_ptr<const tissue::BakedOrgan> quadratic_of(const tissue::BakedOrgan&
 }
 
 // A rod carries the skin itself: every vertex is a point of it. Nothing of what yields under a tip
-// is in the rod, so that all of it is the local law's, of tissue as thick as the tube.
+// is in the rod, so that all of it is the local law's, of a layer that lies on the axis, which the
+// rod moves. tests/sim/tube_press_test.cpp has the reference solver beside it: the whole tube as
+// the layer's thickness would be 15 % too soft.
 std::shared_ptr<const tissue::BakedOrgan> rod_of(const tissue::BakedOrgan& organ) {
     auto rod = std::make_shared<tissue::BakedOrgan>(organ);
     tissue::ContactSurface& skin = rod->surface;
@@ -112,7 +114,7 @@ std::shared_ptr<const tissue::BakedOrgan> rod_of(const tissue::BakedOrgan& organ
                 glm::distance(organ.line.node_m[nearest], skin.rest_m[v]))
                 nearest = i;
         }
-        const double thick_m = 2.0 * organ.line.radius_m[nearest];
+        const double thick_m = organ.line.radius_m[nearest];
         skin.row_node.push_back(v);
         skin.row_weight.push_back(1.0);
         skin.offset_m.emplace_back(0.0);

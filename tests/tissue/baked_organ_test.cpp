@@ -1,4 +1,4 @@
-#include "tissue/mesh/baked_organ.h"
+#include "tests/tissue/organ_bytes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,35 +9,9 @@
 #include <stdexcept>
 #include <string_view>
 
+using namespace organ_bytes;
+
 namespace {
-
-constexpr std::size_t kHashSize = 8;
-
-// One tetrahedron with its four faces as skin, rows of one or two nodes.
-tissue::BakedOrgan small_organ() {
-    tissue::BakedOrgan o;
-    o.name = "probe";
-    o.mesh.rest_m = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}};
-    o.mesh.tets = {{0, 1, 2, 3}};
-    o.anchored = {1, 0, 1, 1};
-    o.bed = {{0, {0.1, 0.2, 0.3, 0.4}, 0.5}, {0, {0.7, 0.1, 0.1, 0.1}, 0.25}};
-    o.surface.rest_m = o.mesh.rest_m;
-    o.surface.triangles = tissue::boundary_triangles(o.mesh);
-    o.surface.neighbours = tissue::triangle_neighbours(o.surface.triangles);
-    o.surface.row_start = {0, 1, 3, 4, 5};
-    o.surface.row_node = {0, 1, 2, 2, 3};
-    o.surface.row_weight = {1.0, 0.25, 0.75, 1.0, 1.0};
-    o.surface.offset_m = {{0, 0, 1e-3}, {0, 1e-3, 0}, {1e-3, 0, 0}, {-1e-3, 0, 0}};
-    o.surface.frame_node = {{0, 1, 2}, {1, 2, 3}, {2, 3, 0}, {3, 0, 1}};
-    o.surface.footprint_radius_m = {4e-3, 5e-3, 6e-3, 7e-3};
-    o.surface.thickness_m = {1e-2, 2e-2, 3e-2, 4e-2};
-    o.surface.mesh_term_n_m = {1, 2, 3, 4};
-    o.surface.mesh_term_t_m = {5, 6, 7, 8};
-    o.material.young_pa = 1234.5;
-    o.material.source = "made up";
-    o.recipe_hash = 0x0123456789ABCDEFULL;
-    return o;
-}
 
 // The same with rows on the ten nodes: a face's middle is 4/9 of each of its edges' nodes and -1/9
 // of its corners. By ascending corners the edges are 01 02 03 12 13 23, nodes 4 to 9.
@@ -51,54 +25,7 @@ tissue::BakedOrgan quadratic_organ() {
     return o;
 }
 
-// A straight tube of three nodes in a skin of four faces.
-tissue::BakedOrgan rod_organ() {
-    tissue::BakedOrgan o = small_organ();
-    o.mesh = {};
-    o.anchored.clear();
-    o.bed.clear();
-    const auto skin = o.surface;
-    o.surface = {};
-    o.surface.rest_m = skin.rest_m;
-    o.surface.triangles = skin.triangles;
-    o.surface.neighbours = skin.neighbours;
-    o.line = {.node_m = {{0, 0, 0}, {0.01, 0, 0}, {0.02, 0.001, 0}},
-              .radius_m = {2e-3, 3e-3, 4e-3},
-              .held = {1, 1, 0},
-              .hold_m = {0.0, 0.25, 0.5},
-              .bed_pa = 1500.0};
-    return o;
-}
-
-constexpr std::size_t kLineSize = 4 * 8 + 8; // of an organ without a line: four counts and the bed
-
 constexpr std::size_t kOrderAt = 8 + 4 + 8 + 5 + 1; // magic, version, "probe", rigid
-
-// FNV-1a, 64 bit (Fowler, Noll & Vo 1991), written a second time.
-std::uint64_t fnv(std::span<const std::byte> bytes) {
-    std::uint64_t hash = 14695981039346656037ULL;
-    for (const auto b : bytes) {
-        hash ^= std::to_integer<std::uint64_t>(b);
-        hash *= 1099511628211ULL;
-    }
-    return hash;
-}
-
-void sign(std::vector<std::byte>& bytes) {
-    const std::uint64_t hash = fnv(std::span(bytes).first(bytes.size() - kHashSize));
-    for (std::size_t i = 0; i < kHashSize; ++i) {
-        bytes[bytes.size() - kHashSize + i] = static_cast<std::byte>(hash >> (8 * i) & 0xFF);
-    }
-}
-
-std::string refusal(const std::vector<std::byte>& bytes) {
-    try {
-        tissue::read_organ(bytes);
-    } catch (const std::invalid_argument& e) {
-        return e.what();
-    }
-    return "";
-}
 
 bool all_below(const auto& lists, std::size_t limit) {
     return std::all_of(lists.begin(), lists.end(), [&](const auto& list) {
@@ -335,54 +262,6 @@ TEST_CASE("baked organ: a file of version 3 is read as a body without a rod") {
     const auto read = tissue::read_organ(bytes);
     CHECK_FALSE(tissue::is_rod(read));
     CHECK(tissue::write_organ(read) == tissue::write_organ(organ));
-}
-
-TEST_CASE("baked organ: a tube comes back as the rod it was, and its skin has no rows") {
-    const auto organ = rod_organ();
-    const auto bytes = tissue::write_organ(organ);
-    const auto read = tissue::read_organ(bytes);
-    CHECK(tissue::is_rod(read));
-    CHECK(read.line.node_m == organ.line.node_m);
-    CHECK(read.line.radius_m == organ.line.radius_m);
-    CHECK(read.line.held == organ.line.held);
-    CHECK(read.line.hold_m == organ.line.hold_m);
-    CHECK(read.line.bed_pa == organ.line.bed_pa);
-    CHECK(tissue::write_organ(read) == bytes);
-}
-
-TEST_CASE("baked organ: a rod that cannot be stepped is refused, whatever its bytes say") {
-    const auto refused = [](auto change) {
-        auto organ = rod_organ();
-        change(organ);
-        return refusal(tissue::write_organ(organ));
-    };
-    CHECK(refused([](auto& o) { o.line.radius_m.pop_back(); }).find("radii of the line") !=
-          std::string::npos);
-    CHECK(refused([](auto& o) { o.line.held[1] = 2; }).find("held node of the line") !=
-          std::string::npos);
-    CHECK(refused([](auto& o) { o.line.radius_m[1] = -3e-3; }).find("radius_m") !=
-          std::string::npos);
-    CHECK(refused([](auto& o) { o.line.node_m[1] = o.line.node_m[0]; }).find("at one place") !=
-          std::string::npos);
-    CHECK(refused([](auto& o) { o.line.hold_m[2] = -1.0; }).find("spring 2") != std::string::npos);
-    CHECK(refused([](auto& o) { o.line.node_m.resize(1); }) != "");
-    CHECK(refused([](auto& o) { o.rigid = true; }).find("line of a rod") != std::string::npos);
-    CHECK(refused([](auto& o) { o.mesh.rest_m = {{0, 0, 0}}; }) != "");
-    // any byte changed, signed anew: refused or good to step
-    const auto bytes = tissue::write_organ(rod_organ());
-    for (std::size_t at = 12; at + kHashSize < bytes.size(); ++at) {
-        for (const int flip : {1, 0x80, 0xFF}) {
-            auto bad = bytes;
-            bad[at] ^= static_cast<std::byte>(flip);
-            sign(bad);
-            try {
-                const auto read = tissue::read_organ(bad);
-                if (tissue::is_rod(read))
-                    CHECK_NOTHROW(tissue::make_rod(read.line, read.material, glm::dvec3{0.0}));
-            } catch (const std::invalid_argument&) {
-            }
-        }
-    }
 }
 
 TEST_CASE("baked organ: rows of order 2 may name nodes on edges, frames and tets may not") {
