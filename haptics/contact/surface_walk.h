@@ -25,14 +25,14 @@ struct WalkResult {
 
 namespace walk_detail {
 
-using Corners = std::array<glm::dvec3, 3>;
+using WalkCorners = std::array<glm::dvec3, 3>;
 
-inline glm::dvec3 mix(const Corners& p, const glm::dvec3& w) noexcept {
+inline glm::dvec3 mix(const WalkCorners& p, const glm::dvec3& w) noexcept {
     return w.x * p[0] + w.y * p[1] + w.z * p[2];
 }
 
 /// Normal of the triangle; zero if its area is lost in rounding (a sliver without a plane).
-inline glm::dvec3 plane_normal(const Corners& p) noexcept {
+inline glm::dvec3 plane_normal(const WalkCorners& p) noexcept {
     const glm::dvec3 n = glm::cross(p[1] - p[0], p[2] - p[0]);
     const double longest2 =
         std::max({glm::dot(p[1] - p[0], p[1] - p[0]), glm::dot(p[2] - p[1], p[2] - p[1]),
@@ -42,7 +42,7 @@ inline glm::dvec3 plane_normal(const Corners& p) noexcept {
 }
 
 /// How the barycentric weights change along `d`, which lies in the triangle's plane.
-inline glm::dvec3 weight_change(const Corners& p, const glm::dvec3& n,
+inline glm::dvec3 weight_change(const WalkCorners& p, const glm::dvec3& n,
                                 const glm::dvec3& d) noexcept {
     const double twice_area = glm::dot(n, glm::cross(p[1] - p[0], p[2] - p[0]));
     const double w0 = glm::dot(n, glm::cross(p[2] - p[1], d)) / twice_area;
@@ -56,7 +56,7 @@ inline glm::dvec3 unit_or_zero(const glm::dvec3& v) noexcept {
 }
 
 /// Turns `d` about the edge opposite corner `entry` into the plane with normal `n`, inwards.
-inline glm::dvec3 unfold(const Corners& p, int entry, const glm::dvec3& n,
+inline glm::dvec3 unfold(const WalkCorners& p, int entry, const glm::dvec3& n,
                          const glm::dvec3& d) noexcept {
     const glm::dvec3 edge = unit_or_zero(p[(entry + 2) % 3] - p[(entry + 1) % 3]);
     const glm::dvec3 along = edge * glm::dot(edge, d);
@@ -65,7 +65,7 @@ inline glm::dvec3 unfold(const Corners& p, int entry, const glm::dvec3& n,
 }
 
 /// Closest point of the edge opposite corner k to x, as weights.
-inline glm::dvec3 edge_weights(const Corners& p, int k, const glm::dvec3& x) noexcept {
+inline glm::dvec3 edge_weights(const WalkCorners& p, int k, const glm::dvec3& x) noexcept {
     const glm::dvec3 edge = p[(k + 2) % 3] - p[(k + 1) % 3];
     const double length2 = glm::dot(edge, edge);
     const double at = length2 > 0.0 ? glm::dot(edge, x - p[(k + 1) % 3]) / length2 : 0.0;
@@ -90,11 +90,11 @@ WalkResult walk(const Surface& surface, SurfacePoint from, glm::dvec3 offset_m) 
     int& triangle = result.point.triangle;
     glm::dvec3& weight = result.point.weight;
     const auto corners_of = [&surface](int t) {
-        return Corners{surface.position(t, 0), surface.position(t, 1), surface.position(t, 2)};
+        return WalkCorners{surface.position(t, 0), surface.position(t, 1), surface.position(t, 2)};
     };
 
     // only the part along the surface counts
-    Corners p = corners_of(triangle);
+    WalkCorners p = corners_of(triangle);
     glm::dvec3 n = plane_normal(p);
     glm::dvec3 left_m = offset_m - n * glm::dot(n, offset_m);
     int entry = -1; // corner opposite the edge just crossed: the way back is closed

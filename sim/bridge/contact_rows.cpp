@@ -218,6 +218,8 @@ void condense_rows(TissueRig& rig, haptics::ContactProblem& problem) noexcept {
         answer_rows(rig, rows, rig.bodies[b]);
         read_compliance(rig, rows, rig.bodies[b], problem);
     }
+    if (rig.organs)
+        brace_tools(rig, problem);
     make_symmetric(problem);
     for (int i = 0; i < kTools; ++i) {
         if (problem.row[i].active)

@@ -32,7 +32,7 @@ double largest(const std::vector<double>& values) noexcept {
     return most;
 }
 
-// Whether it has stayed within that for that long, if nothing touches it.
+// Whether it has stayed within that for that long, if no tool touches it.
 bool has_come_to_rest(Body& body, bool touched, double step_s) noexcept {
     SoftBody& soft = *body.soft;
     double farthest_m = 0.0;
@@ -71,6 +71,8 @@ bool load_before(TissueRig& rig, std::size_t body) noexcept {
         tissue::add_row(tissue::dofs(soft.solid), rig.bodies[body].organ->surface,
                         tissue_point(contact.at), contact.before_n, -1.0, soft.load_n);
     }
+    if (rig.organs)
+        pressed |= add_organ_load(rig, body, soft.load_n);
     return pressed;
 }
 
@@ -100,31 +102,64 @@ void wake_touched(TissueRig& rig, const haptics::ContactSolution& solution) noex
     }
 }
 
+// Organs under what the tools' forces have become; then all of their forces are in the load.
+void push_again(TissueRig& rig, const haptics::ContactProblem& problem,
+                const haptics::ContactSolution& solution, StepOutcome& outcome) noexcept {
+    std::array<glm::dvec3, kTools> change_n{};
+    for (int i = 0; i < kTools; ++i) {
+        if (problem.row[i].active)
+            change_n[i] = solution.force_n[i] - rig.contact[i].before_n;
+    }
+    follow_tools(rig, change_n);
+    push_organs(rig);
+    keep_organ_forces(rig);
+    outcome.organ_residual_m = rig.organs->residual_m;
+    for (std::size_t b = 0; b < rig.bodies.size(); ++b) {
+        if (rig.bodies[b].soft && !rig.bodies[b].soft->resting)
+            add_organ_load(rig, b, rig.bodies[b].soft->load_n);
+    }
+}
+
+void advance_body(TissueRig& rig, std::size_t b, StepOutcome& outcome) noexcept {
+    Body& body = rig.bodies[b];
+    SoftBody& soft = *body.soft;
+    const bool placed = rig.organs && is_pushed(rig, b);
+    const tissue::SolidReport report = tissue::end_step(
+        soft.solid, soft.load_n, rig.config.relinearise_m, soft.motion_m, placed);
+    note(report, outcome);
+    const double moved_m = largest(soft.motion_m);
+    soft.linearisations += report.new_tangent;
+    soft.moved_m += moved_m;
+    tissue::place_surface(body.organ->surface, soft.skin_frame, tissue::position_m(soft.solid),
+                          body.skin_m, body.skin_normal);
+}
+
 void advance_bodies(TissueRig& rig, const haptics::ContactSolution& solution,
                     StepOutcome& outcome) noexcept {
     for (std::size_t b = 0; b < rig.bodies.size(); ++b) {
         Body& body = rig.bodies[b];
+        rig.rests[b] = 1;
         if (!body.soft || body.soft->resting)
             continue;
-        SoftBody& soft = *body.soft;
         bool touched = false;
         for (int i = 0; i < kTools; ++i) {
             touched |= rig.contact[i].body == static_cast<int>(b) &&
                        solution.force_n[i] != glm::dvec3{0.0};
         }
-        if (has_come_to_rest(body, touched, rig.config.step_s)) {
-            tissue::stop(soft.solid);
-            soft.resting = true;
+        rig.rests[b] = has_come_to_rest(body, touched, rig.config.step_s);
+    }
+    if (rig.organs)
+        rest_together(rig, rig.rests);
+    for (std::size_t b = 0; b < rig.bodies.size(); ++b) {
+        Body& body = rig.bodies[b];
+        if (!body.soft || body.soft->resting)
+            continue;
+        if (!rig.rests[b]) {
+            advance_body(rig, b, outcome);
             continue;
         }
-        const tissue::SolidReport report =
-            tissue::end_step(soft.solid, soft.load_n, rig.config.relinearise_m, soft.motion_m);
-        note(report, outcome);
-        const double moved_m = largest(soft.motion_m);
-        soft.linearisations += report.new_tangent;
-        soft.moved_m += moved_m;
-        tissue::place_surface(body.organ->surface, soft.skin_frame, tissue::position_m(soft.solid),
-                              body.skin_m, body.skin_normal);
+        tissue::stop(body.soft->solid);
+        body.soft->resting = true;
     }
 }
 
@@ -189,6 +224,9 @@ TissueRig make_tissue_rig(std::vector<Body> bodies, const TissueConfig& config) 
     TissueRig rig;
     rig.config = config;
     rig.bodies = std::move(bodies);
+    rig.rests.assign(rig.bodies.size(), 0);
+    if (config.organs_meet && rig.bodies.size() > 1)
+        rig.organs = make_organ_contact(rig.bodies);
     // one scratch patch per tool, large enough for whichever body it meets
     const auto largest =
         std::max_element(rig.bodies.begin(), rig.bodies.end(), [](const Body& a, const Body& b) {
@@ -223,7 +261,11 @@ StepOutcome tissue_step(TissueRig& rig, const ToolsNow& tools, TissueAnswer& ans
         rig.floor_mpn[i] = coupling_floor_mpn(tools.shaft[i], rig.device_npm[i]);
     }
     follow_contacts(rig, tools);
+    if (rig.organs)
+        meet_organs(rig);
     free_motions(rig, outcome);
+    if (rig.organs)
+        push_organs(rig);
     haptics::ContactProblem problem;
     fill_rows(rig, tools, problem);
     condense_rows(rig, problem);
@@ -231,6 +273,8 @@ StepOutcome tissue_step(TissueRig& rig, const ToolsNow& tools, TissueAnswer& ans
     outcome.contact_residual_m = solution.residual_m;
     wake_touched(rig, solution);
     apply_forces(rig, problem, solution);
+    if (rig.organs)
+        push_again(rig, problem, solution, outcome);
     advance_bodies(rig, solution, outcome);
     outcome.peak_stress_pa = peak_stress_pa(rig);
     slide_contacts(rig, solution);
@@ -239,6 +283,8 @@ StepOutcome tissue_step(TissueRig& rig, const ToolsNow& tools, TissueAnswer& ans
     answer.local.sample_tick = tools.tick;
     if (rig.config.basis)
         make_local_models(rig, answer.local);
+    if (rig.config.basis && rig.organs)
+        add_organ_residual(rig, answer.local);
     answer.seen.targets = static_cast<int>(rig.targets.size());
     place_targets(rig, answer.seen.target_um);
     see_targets(rig, tools.scope, answer.seen.clear_rays);

@@ -3,12 +3,13 @@
 // on until the next one. The threaded session calls it on the tissue thread, lockstep on the only
 // thread; it reads no clock.
 //
-//   follow the contact points -> free motion under the forces of before -> condense the rows ->
-//   solve the contact for all of the forces, move by their change -> advance and linearise ->
-//   modes of the local model -> the answer
+//   follow the contact points -> free motion under the forces of before -> organs push each other
+//   -> condense the rows -> solve the contact for all of the forces, move by their change -> organs
+//   again -> advance and linearise -> modes of the local model -> the answer
 #pragma once
 
 #include "sim/bridge/body.h"
+#include "sim/bridge/organ_contact.h"
 #include "sim/bridge/sight.h"
 #include "sim/exchange.h"
 
@@ -40,10 +41,11 @@ struct TissueConfig {
     double reach_m = 5e-3;        // a model exists before the touch: v (L+2) Tf + this
     double patch_radius_m = 14e-3;
     double friction_rigid = 0.05;
-    double relinearise_m = 20e-6;   // below: the tangent of before still holds (0.2 % of an
-                                    // element's strain); 0: linearised in every step
-    bool basis = true;              // false: forces only (the monolithic reference)
-    std::vector<tissue::Tier> tier; // by organ; empty: corotated
+    double relinearise_m = 20e-6;     // below: the tangent of before still holds (0.2 % of an
+                                      // element's strain); 0: linearised in every step
+    bool organs_meet = false;         // they push each other and lie on scenery, at a price
+    bool basis = true;                // false: forces only (the monolithic reference)
+    std::vector<tissue::Tier> tier{}; // by organ; empty: corotated
 };
 
 /// What the patch of a tool showed of the modes in the step before.
@@ -57,14 +59,16 @@ struct TissueRig {
     TissueConfig config;
     std::vector<Body> bodies;
     std::vector<EmbeddedTarget> targets;
-    std::optional<Sight> sight; // none: nobody asks what the endoscope sees
-    double mark_radius_m = 0.0; // of the targets' marks, for sight
+    std::optional<OrganContact> organs; // none: only tools touch
+    std::optional<Sight> sight;         // none: nobody asks what the endoscope sees
+    double mark_radius_m = 0.0;         // of the targets' marks, for sight
     std::array<FemContact, kTools> contact{};
     std::array<haptics::ContactMemory, kTools> memory{};
     std::array<double, kTools> device_npm{800.0, 800.0, 800.0}; // 0.8 x 2b/T of each device
     std::array<double, kTools> floor_mpn{};                     // 1/Kc at the tip, see below
     std::array<tissue::Patch, kTools> patch;
     std::array<ShownShapes, kTools> shown;
+    std::vector<std::uint8_t> rests; // by body, of the step being made
     std::int64_t next_step = 0;
     std::int64_t last_sample_tick = -1;
 };
@@ -73,8 +77,9 @@ struct StepOutcome {
     tasks::StepTrace trace;
     double linear_residual = 0.0; // worst body
     double contact_residual_m = 0.0;
-    double peak_stress_pa = 0.0; // von Mises, over the soft bodies that are not resting; where
-                                 // nothing moved relinearise_m, that of the last linearisation
+    double organ_residual_m = 0.0; // of the gaps between organs
+    double peak_stress_pa = 0.0;   // von Mises, over the soft bodies that are not resting; where
+                                   // nothing moved relinearise_m, that of the last linearisation
     int inverted = 0;
     int iterations = 0; // beyond the first Newton iteration, worst body; see SolidReport
     double residual = 0.0;

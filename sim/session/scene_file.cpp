@@ -219,10 +219,14 @@ Scene parse_scene(std::string_view text, std::string_view file, Mistakes* mistak
     section(mistakes, [&] {
         const TomlTable root = TomlTable::parse(text, file);
         section(mistakes, [&] {
-            root.accept_only({"id", "title", "organ", "tool", "view", "scope"});
+            root.accept_only({"id", "title", "between_organs", "organ", "tool", "view", "scope"});
         });
         section(mistakes, [&] { scene.id = root.text("id"); });
         section(mistakes, [&] { scene.title = root.text("title"); });
+        section(mistakes, [&] {
+            scene.organs_meet = root.has("between_organs") &&
+                                root.choice("between_organs", {"nothing", "contact"}) == 1;
+        });
         const std::vector<TomlTable> organs = root.tables("organ");
         for (const TomlTable& t : organs) {
             section(mistakes, [&] {

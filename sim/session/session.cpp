@@ -77,6 +77,7 @@ std::unique_ptr<Session> build(const RunOptions& options, LoadedScene scene,
     session->scene = std::move(scene);
     TissueConfig config;
     config.step_s = period * kTick_s;
+    config.organs_meet = session->scene.scene.organs_meet;
     config.tier = parse_model(options.model, organ_names(session->scene.scene));
     session->tissue = make_tissue(session->scene, {}, config);
     if (check)

@@ -55,6 +55,7 @@ TierTrack run_tier(const LoadedScene& scene, std::span<const TargetWish> targets
                    const Poses& poses, const ModelChoice& choice, double step_s) {
     TissueConfig config;
     config.step_s = step_s;
+    config.organs_meet = scene.scene.organs_meet;
     config.tier = choice;
     TissueRig rig = make_tissue(scene, targets, config);
     TierTrack track{.choice = choice};

@@ -59,3 +59,16 @@ TEST_CASE("find-tubes: a tool that moves out of the picture is that, nothing els
                         wait(0.5),
                     6.0) == "out_of_view");
 }
+
+TEST_CASE(
+    "find-tubes: organs that meet change no event of it") {
+    const ScriptFile file(lift_flap() + find(kVein) + find(kArtery) + find(kDuct));
+    const auto session = sim::make_session(file.options(30.0));
+    sim::TissueRig& tissue = session->tissue;
+    tissue.organs = sim::make_organ_contact(tissue.bodies);
+    const Led led = led_by(*session);
+    CHECK(led.valid);
+    CHECK(led.events == "tube_found tube_found tube_found completed");
+    CHECK(tissue.organs->solves > 0); // the flap pressed on what is below it
+    CHECK(tissue.organs->rows.left_out == 0);
+}

@@ -1,5 +1,5 @@
 // tests/sim/scene_look_test.cpp
-// The key `look` of a scene's organs.
+// Keys of a scene: `look` of its organs, and whether these meet.
 #include "scene_fixture.h"
 
 #include <fmt/format.h>
@@ -30,5 +30,17 @@ TEST_CASE("scene look: an unknown word is refused with all that are known") {
                          "scene.toml:6: look = \"blue\": one of \"liver\", \"stomach\", "
                          "\"spleen\", \"kidney\", \"bowel\", \"pancreas\", \"fat\", "
                          "\"gallbladder\", \"artery\", \"vein\", \"duct\", \"wall\", \"tissue\"",
+                         tasks::BadInput);
+}
+
+TEST_CASE("scene: organs meet only if it says so") {
+    const auto meet = [](const std::string& line) {
+        return sim::parse_scene(line + "\n" + kScene, "scene.toml").organs_meet;
+    };
+    CHECK_FALSE(meet(""));
+    CHECK_FALSE(meet("between_organs = \"nothing\""));
+    CHECK(meet("between_organs = \"contact\""));
+    CHECK_THROWS_WITH_AS(meet("between_organs = \"glue\""),
+                         "scene.toml:1: between_organs = \"glue\": one of \"nothing\", \"contact\"",
                          tasks::BadInput);
 }

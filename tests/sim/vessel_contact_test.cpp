@@ -31,8 +31,9 @@ struct Bench {
     explicit Bench(double tip_radius_m) {
         for (sim::SceneTool& tool : loaded.scene.tool)
             tool.tip_radius_m = tip_radius_m;
-        rig = sim::make_tissue(loaded, {}, {});
-        rig.bodies.erase(rig.bodies.begin()); // the flap
+        std::vector<sim::Body> bodies = sim::make_bodies(loaded, sim::TissueConfig{}.step_s);
+        bodies.erase(bodies.begin()); // the flap
+        rig = sim::make_tissue_rig(std::move(bodies), {});
         for (auto& a : answer)
             a = std::make_unique<sim::TissueAnswer>();
         for (haptics::ToolTip& tip : now.tip)

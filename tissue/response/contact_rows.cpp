@@ -3,7 +3,6 @@
 #include "tissue/response/contact_rows.h"
 
 namespace tissue {
-namespace {
 
 using glm::dvec3;
 
@@ -19,8 +18,6 @@ void add_vertex_row(Dofs dofs, const ContactSurface& surface, std::uint32_t vert
         out[dof + 2] += w * scaled.z;
     }
 }
-
-} // namespace
 
 void add_row(Dofs dofs, const ContactSurface& surface, const ContactPoint& at,
              const dvec3& direction, double scale, std::span<double> out) noexcept {

@@ -22,6 +22,10 @@ struct ContactPoint {
 void add_row(Dofs dofs, const ContactSurface& surface, const ContactPoint& at,
              const glm::dvec3& direction, double scale, std::span<double> out) noexcept;
 
+/// The same for one vertex of the surface: out += sum_i w_i scaled.
+void add_vertex_row(Dofs dofs, const ContactSurface& surface, std::uint32_t vertex,
+                    const glm::dvec3& scaled, std::span<double> out) noexcept;
+
 /// Motion of the contact point for a vector of unknowns: sum_i w_i x_i.
 glm::dvec3 row_value(Dofs dofs, const ContactSurface& surface, const ContactPoint& at,
                      std::span<const double> x) noexcept;

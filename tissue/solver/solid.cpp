@@ -122,6 +122,13 @@ double solve_block(QuadraticSolid& s, double tolerance, std::span<const double> 
                    std::span<double> block, int columns) noexcept {
     QuadraticOptions options = s.options;
     options.linear_tolerance = tolerance;
+    if (columns == 1 && first.empty() && !s.system.recovering) { // alone it is cheaper
+        const std::span<double> b(s.system.unknown.data(), block.size());
+        std::copy(block.begin(), block.end(), b.begin());
+        const LinearReport report = solve(s.model, options, b, s.system, block);
+        s.most_iterations = std::max(s.most_iterations, report.iterations);
+        return report.relative_residual;
+    }
     const ColumnsReport report =
         solve_columns(s.model, options, s.system, block, columns, {}, first);
     s.most_iterations = std::max(s.most_iterations, report.iterations);
@@ -135,7 +142,7 @@ double solve_block(RodSolid& s, double, std::span<const double>, std::span<doubl
 }
 
 SolidReport end(CorotatedSolid& s, std::span<const double> load_n, double relinearise_m,
-                std::span<double> du) noexcept {
+                bool placed, std::span<double> du) noexcept {
     s.drift_m += largest(du);
     if (s.linear || (s.system.inverted == 0 && !(s.drift_m > relinearise_m))) {
         advance(s.model, du, s.system.dt_s, s.state);
@@ -143,7 +150,7 @@ SolidReport end(CorotatedSolid& s, std::span<const double> load_n, double reline
         return {};
     }
     ChordEnd corrected;
-    if (relinearise_m > 0.0)
+    if (relinearise_m > 0.0 && !placed)
         corrected = end_on_chord(s.model, load_n, du, s.system, s.chord, s.state);
     if (corrected.made) {
         s.drift_m = 0.0;
@@ -174,11 +181,14 @@ void renew_factor(QuadraticSolid& s) noexcept {
 }
 
 SolidReport end(QuadraticSolid& s, std::span<const double> load_n, double relinearise_m,
-                std::span<double> du) noexcept {
+                bool placed, std::span<double> du) noexcept {
     if (!s.begun)
         linearize(s.model, s.state, s.system);
     s.begun = false;
-    SolidReport report = of(finish(s.model, s.options, load_n, s.system, du), 0);
+    QuadraticOptions options = s.options;
+    if (placed)
+        options.max_newton = 0;
+    SolidReport report = of(finish(s.model, options, load_n, s.system, du), 0);
     advance(s.model, s.system, du, s.state);
     renew_factor(s);
     s.drift_m += largest(du);
@@ -188,7 +198,7 @@ SolidReport end(QuadraticSolid& s, std::span<const double> load_n, double reline
     return report;
 }
 
-SolidReport end(RodSolid& s, std::span<const double> load_n, double relinearise_m,
+SolidReport end(RodSolid& s, std::span<const double> load_n, double relinearise_m, bool,
                 std::span<double> du) noexcept {
     const RodReport made = end_step(s.model.rod, load_n, {}, s.points, du, s.system, s.state);
     s.drift_m += largest(du);
@@ -305,8 +315,8 @@ double solve(Solid& solid, double tolerance, std::span<const double> first, std:
 }
 
 SolidReport end_step(Solid& solid, std::span<const double> load_n, double relinearise_m,
-                     std::span<double> du) noexcept {
-    return std::visit([&](auto& s) { return end(s, load_n, relinearise_m, du); }, solid);
+                     std::span<double> du, bool placed) noexcept {
+    return std::visit([&](auto& s) { return end(s, load_n, relinearise_m, placed, du); }, solid);
 }
 
 void stop(Solid& solid) noexcept {

@@ -119,9 +119,11 @@ double solve(Solid& solid, double tolerance, std::span<const double> first, std:
 
 /// Moves by `du`, corrected for the forces there. The tangent stays while nothing has drifted
 /// farther than `relinearise_m`, of corotated bodies while it corrects well (chord.h); 0: never.
-/// `load_n`: of the contact, on the unknowns.
+/// `load_n`: of the contact, on the unknowns. `placed`: contact has placed the skin, and no
+/// correction may move it again; what is left over drives the next step, as in linearly implicit
+/// integration (Baraff & Witkin, SIGGRAPH 1998).
 SolidReport end_step(Solid& solid, std::span<const double> load_n, double relinearise_m,
-                     std::span<double> du) noexcept;
+                     std::span<double> du, bool placed = false) noexcept;
 
 /// Stops where it is.
 void stop(Solid& solid) noexcept;
