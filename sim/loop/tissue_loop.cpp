@@ -124,8 +124,8 @@ void advance_body(TissueRig& rig, std::size_t b, StepOutcome& outcome) noexcept 
     Body& body = rig.bodies[b];
     SoftBody& soft = *body.soft;
     const bool placed = rig.organs && is_pushed(rig, b);
-    const tissue::SolidReport report = tissue::end_step(
-        soft.solid, soft.load_n, rig.config.relinearise_m, soft.motion_m, placed);
+    const tissue::SolidReport report =
+        tissue::end_step(soft.solid, soft.load_n, rig.config.relinearise_m, soft.motion_m, placed);
     note(report, outcome);
     const double moved_m = largest(soft.motion_m);
     soft.linearisations += report.new_tangent;

@@ -36,7 +36,7 @@ struct SceneTool {
 
 struct Scene {
     std::string id, title, text; // text: the file as it was read
-    bool organs_meet = false; // organs push each other and lie on scenery
+    bool organs_meet = false;    // organs push each other and lie on scenery
     std::vector<SceneOrgan> organ;
     std::array<SceneTool, kTools> tool; // left, right, assist
     tasks::View view;                   // with a scope: as it is held at first

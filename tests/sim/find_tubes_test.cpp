@@ -60,8 +60,7 @@ TEST_CASE("find-tubes: a tool that moves out of the picture is that, nothing els
                     6.0) == "out_of_view");
 }
 
-TEST_CASE(
-    "find-tubes: organs that meet change no event of it") {
+TEST_CASE("find-tubes: organs that meet change no event of it") {
     const ScriptFile file(lift_flap() + find(kVein) + find(kArtery) + find(kDuct));
     const auto session = sim::make_session(file.options(30.0));
     sim::TissueRig& tissue = session->tissue;

@@ -95,7 +95,8 @@ TEST_CASE("organs: a block that lies over an edge topples off it, and is in noth
         const Block upper{
             .low_m = {-0.014, -0.01, 42e-3}, .size_m = {0.045, 0.02, 0.02}, .cells = {5, 2, 2}};
         Bench bench(on_floor({step, upper}, tier));
-        // an edge lands at 0.6 m/s, and quadratic shapes take Newton's steps once contact has placed it
+        // an edge lands at 0.6 m/s, and quadratic shapes take Newton's steps once contact has
+        // placed it
         const double most_m = tier == tissue::Tier::quadratic ? 0.6e-3 : 0.1e-3;
         CHECK(steps_deepest_m(bench, 60) < most_m);
         double low_m = 1.0;

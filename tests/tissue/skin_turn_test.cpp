@@ -1,8 +1,8 @@
 // tests/tissue/skin_turn_test.cpp
 // How a skin vertex moves with its nodes, the turning of its offset included: exact for rigid
 // turns, and the derivative of where the surface is placed.
-#include "tests/tissue/bodies.h"
 #include "tests/tissue/block.h"
+#include "tests/tissue/bodies.h"
 #include "tissue/response/footprint.h"
 #include "tissue/response/skin_turn.h"
 
@@ -38,7 +38,8 @@ struct Skinned {
     }
     double motion(std::uint32_t v, const dvec3& direction, const std::vector<double>& du) const {
         return glm::dot(direction, tissue::vertex_value(dof, skin, v, du)) +
-               tissue::turn_value(dof, tissue::skin_turn(skin, node_m, v, place_m[v], direction), du);
+               tissue::turn_value(dof, tissue::skin_turn(skin, node_m, v, place_m[v], direction),
+                                  du);
     }
 };
 
@@ -60,9 +61,9 @@ TEST_CASE("skin turn: a body that turns carries every vertex with it") {
         for (const dvec3& d : kDirections) {
             const double exact = glm::dot(d, glm::cross(omega, s.place_m[v]));
             worst = std::max(worst, std::abs(s.motion(v, d, du) - exact));
-            left_out = std::max(left_out,
-                                std::abs(glm::dot(d, tissue::vertex_value(s.dof, s.skin, v, du)) -
-                                         exact));
+            left_out =
+                std::max(left_out,
+                         std::abs(glm::dot(d, tissue::vertex_value(s.dof, s.skin, v, du)) - exact));
         }
     }
     CHECK(worst < 1e-14);

@@ -13,7 +13,8 @@ struct Problem {
     std::vector<double> B, q; // row by row
     std::vector<double> last, y_of_moves;
 
-    Problem(std::size_t size, std::size_t factors, unsigned seed) : n(size), B(size * size), q(size) {
+    Problem(std::size_t size, std::size_t factors, unsigned seed)
+        : n(size), B(size * size), q(size) {
         std::mt19937_64 random(seed);
         std::normal_distribution<double> normal;
         std::vector<double> L(n * factors);
@@ -69,7 +70,8 @@ Solved solve(Problem& problem, std::vector<double> start, int most = 500) {
     problem.y_of_moves = out.y;
     tissue::UnilateralScratch scratch = tissue::make_unilateral_scratch(problem.n + 3);
     const std::vector<double> weight(problem.n, 1.0);
-    out.report = tissue::solve_unilateral(problem, weight, 1e-11, most, scratch, out.y, out.gradient);
+    out.report =
+        tissue::solve_unilateral(problem, weight, 1e-11, most, scratch, out.y, out.gradient);
     return out;
 }
 
