@@ -7,7 +7,8 @@
 //                  W -= T' (W_o + C)^-1 T, T the gaps that a force of the tool would open
 //   follow_tools   those rows push as the tools' new forces make them, linearly
 //   push_organs    and exactly: some let go, some begin
-// Resting contact costs no solve: forces of before are those of now.
+// Resting contact costs no solve: forces of before are those of now. Tissue loop; nothing but
+// make_organ_contact() allocates.
 #pragma once
 
 #include "haptics/contact/contact_rows.h"
@@ -48,6 +49,7 @@ void follow_tools(TissueRig& rig, std::span<const glm::dvec3> change_n) noexcept
 /// Adds what organs push a body with to the load on its unknowns; whether any does.
 bool add_organ_load(const TissueRig& rig, std::size_t body, std::span<double> load_n) noexcept;
 
+/// By an organ or by scenery, in this step.
 bool is_pushed(const TissueRig& rig, std::size_t body) noexcept;
 
 /// Keeps the forces for the next step, and wakes what is pushed by what is awake.
