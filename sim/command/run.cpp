@@ -22,6 +22,7 @@ struct RunArguments {
     RunOptions options;
     std::string coupling = "anchored", log, junit;
     bool realtime = false, window = false, json = false, no_noise = false, no_forces = false;
+    bool rate_asked = false; // --fem-hz was given
     double seconds = 0.0;
 };
 
@@ -76,12 +77,15 @@ Attempt::Outcome perform(const RunArguments& a, Session& session) {
                       : run_lockstep(session, log, id, asked_to_stop);
 }
 
-void choose_model(RunOptions& options) {
-    const AutoModel chosen = auto_model(options, model_memory(), [](const std::string& doing) {
-        fmt::print(stderr, "choosing the model: {}\n", doing);
-    });
+// The rate too, unless it was asked for.
+void choose_model(RunOptions& options, bool choose_rate) {
+    const AutoModel chosen =
+        auto_model(options, choose_rate, model_memory(), [](const std::string& doing) {
+            fmt::print(stderr, "choosing the model: {}\n", doing);
+        });
     options.model = chosen.model;
     options.model_why = chosen.why;
+    options.fem_hz = chosen.fem_hz;
     fmt::print(stderr, "{}{}", chosen.why, chosen.remembered ? "(chosen before)\n" : "");
 }
 
@@ -89,7 +93,7 @@ void run(const RunArguments& a, int& exit_code) {
     install_signal_guard();
     RunOptions options = a.options;
     if (options.model == "auto")
-        choose_model(options);
+        choose_model(options, !a.rate_asked);
     const std::unique_ptr<Session> session = make_session(options);
     const auto start = std::chrono::steady_clock::now();
     const Attempt::Outcome outcome = perform(a, *session);
@@ -135,7 +139,9 @@ void add_run(CLI::App& app, int& exit_code) {
                   "auto: the cheapest that is accurate enough; or rigid, linear-compliance, "
                   "corotated, quadratic; of one organ otherwise: "
                   "corotated,flap=quadratic");
-    c->add_option("--fem-hz", a->options.fem_hz, "FEM steps a second; divides 1000");
+    c->add_option("--fem-hz", a->options.fem_hz,
+                  "FEM steps a second; divides 1000. Default: 100, with --model auto fewer where "
+                  "they are enough");
     c->add_option("--seed", a->options.seed, "Of everything random in the hand");
     c->add_option("--max-seconds", a->options.max_seconds, "End incomplete after this long");
     c->add_option("--trainee", a->options.trainee, "Pseudonymous id, see trocar trainee");
@@ -147,7 +153,8 @@ void add_run(CLI::App& app, int& exit_code) {
     c->add_flag("--no-noise", a->no_noise, "The hand makes no errors");
     c->add_flag("--no-forces", a->no_forces, "Forces off: positions only");
     c->add_flag("--json", a->json, "One JSON object instead of a table");
-    c->callback([a, &exit_code] {
+    c->callback([a, c, &exit_code] {
+        a->rate_asked = c->count("--fem-hz") > 0;
         a->options.coupling = coupling_named(a->coupling);
         a->options.noise = !a->no_noise;
         a->options.forces_on = !a->no_forces;

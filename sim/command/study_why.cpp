@@ -20,8 +20,23 @@ struct WhyArguments {
     bool json = false;
 };
 
+void add_margin(const TierMargin& m, nlohmann::ordered_json& to) {
+    to["force"] = m.force;
+    to["stiffness"] = m.stiffness;
+    to["position"] = m.position;
+    to["enough"] = m.enough();
+}
+
 nlohmann::ordered_json json_of(const WhyStudy& study) {
-    nlohmann::ordered_json json{{"scene", study.scene}, {"model", study.model}};
+    nlohmann::ordered_json json{
+        {"scene", study.scene}, {"model", study.model}, {"fem_hz", study.rate.hz}};
+    for (const TriedRate& tried : study.rate.tried) {
+        for (const RateMargin& m : tried.margin) {
+            nlohmann::ordered_json rate{{"hz", tried.hz}, {"motion", m.motion}, {"organ", m.organ}};
+            add_margin(m.margin, rate);
+            json["rates"].push_back(rate);
+        }
+    }
     for (const WhyMotion& motion : study.motion) {
         nlohmann::ordered_json one{{"motion", motion.name}, {"steps", motion.steps}};
         for (std::size_t t = 0; t < motion.track.size(); ++t)
@@ -36,13 +51,10 @@ nlohmann::ordered_json json_of(const WhyStudy& study) {
                                      {"why", words_of(organ)}};
             for (std::size_t c = 0; c < tissue::kTierNames.size(); ++c) {
                 for (std::size_t d = c + 1; d < tissue::kTierNames.size(); ++d) {
-                    const TierMargin& m = organ.margin[c][d];
-                    o["margins"].push_back({{"cheap", tissue::kTierNames[c]},
-                                            {"dear", tissue::kTierNames[d]},
-                                            {"force", m.force},
-                                            {"stiffness", m.stiffness},
-                                            {"position", m.position},
-                                            {"enough", m.enough()}});
+                    nlohmann::ordered_json pair{{"cheap", tissue::kTierNames[c]},
+                                                {"dear", tissue::kTierNames[d]}};
+                    add_margin(organ.margin[c][d], pair);
+                    o["margins"].push_back(pair);
                 }
             }
             one["organs"].push_back(o);
@@ -87,12 +99,16 @@ void add_why_study(CLI::App& study) {
     c->add_option("--depth-scale", o.depth_scale, "Of motions: 1 is an 8 mm touch, a 5 mm slide");
     c->add_option("--poisson", o.poisson, "Poisson's ratio of all organs instead of the scene's");
     c->add_option("--young-kpa", a->young_kpa, "Modulus of all organs instead of the scene's");
-    c->add_option("--fem-hz", o.fem_hz, "FEM steps a second; divides 1000");
+    c->add_option("--fem-hz", o.fem_hz,
+                  "FEM steps a second; divides 1000. Default: 100, or fewer where they are enough");
     c->add_option("--seed", o.seed, "Of the expert");
     c->add_option("--max-seconds", o.max_seconds, "Of the expert's attempt");
     c->add_option("--out", a->out, "Folder for CSV and page");
     c->add_flag("--json", a->json, "One JSON object instead of words");
-    c->callback([a] { why(*a); });
+    c->callback([a, c] {
+        a->options.choose_rate = c->count("--fem-hz") == 0;
+        why(*a);
+    });
 }
 
 } // namespace sim

@@ -73,6 +73,10 @@ struct TissueRig {
     std::int64_t last_sample_tick = -1;
 };
 
+/// Relative residual of a step's linear solves; beyond, its forces are no longer those of the
+/// model.
+inline constexpr double kMostLinearResidual = 1e-3;
+
 struct StepOutcome {
     tasks::StepTrace trace;
     double linear_residual = 0.0; // worst body

@@ -265,10 +265,9 @@ void fill_report(Session& session, std::int64_t ticks, bool realtime) {
         if (instrument.limit_state.not_finite > 0)
             r.faults.push_back("force was not a number");
     }
-    constexpr double kGoodResidual = 1e-3;
-    if (session.worst_linear_residual > kGoodResidual) {
-        r.faults.push_back(
-            fmt::format("linear residual {:.1e} > 1e-3", session.worst_linear_residual));
+    if (session.worst_linear_residual > kMostLinearResidual) {
+        r.faults.push_back(fmt::format("linear residual {:.1e} > {:.0e}",
+                                       session.worst_linear_residual, kMostLinearResidual));
     }
     if (session.haptics.not_finite > 0)
         r.faults.push_back("contact force was not a number");

@@ -12,11 +12,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string key_of(const RunOptions& options, const std::string& scene) {
+std::string key_of(const RunOptions& options, bool choose_rate, const std::string& scene) {
     const LoadedScene loaded = load_scene(scene);
     const std::string exercise = read_text(find_exercise(loaded.place, options.exercise));
     const std::string all =
-        fmt::format("{}\n{}\n{}\n{}", TROCAR_VERSION, loaded.hash, options.fem_hz, exercise);
+        fmt::format("{}\n{}\n{} {}\n{}", TROCAR_VERSION, loaded.hash, options.fem_hz,
+                    choose_rate ? "at most" : "exactly", exercise);
     return sha256_hex(std::as_bytes(std::span(all)));
 }
 
@@ -37,27 +38,31 @@ Json recall(const std::filesystem::path& memory, void (*say)(const std::string&)
 
 bool is_choice(const Json& all, const std::string& key) {
     return all.contains(key) && all[key].is_object() && all[key].contains("model") &&
-           all[key]["model"].is_string() && all[key].contains("why") && all[key]["why"].is_string();
+           all[key]["model"].is_string() && all[key].contains("why") &&
+           all[key]["why"].is_string() && all[key].contains("fem_hz") &&
+           all[key]["fem_hz"].is_number_integer();
 }
 
 } // namespace
 
-AutoModel auto_model(const RunOptions& options, const std::filesystem::path& memory,
-                     void (*say)(const std::string&)) {
+AutoModel auto_model(const RunOptions& options, bool choose_rate,
+                     const std::filesystem::path& memory, void (*say)(const std::string&)) {
     const std::string scene = options.scene.empty() ? scene_for(options.exercise) : options.scene;
-    const std::string key = key_of(options, scene);
+    const std::string key = key_of(options, choose_rate, scene);
     Json all = recall(memory, say);
     if (is_choice(all, key))
-        return {all[key]["model"], all[key]["why"], true};
+        return {all[key]["model"], all[key]["why"], all[key]["fem_hz"], true};
     WhyOptions why;
     why.scene = scene;
     why.exercise = {options.exercise};
     why.fem_hz = options.fem_hz;
+    why.choose_rate = choose_rate;
     const WhyStudy study = run_why_study(why, say);
-    AutoModel made{study.model, why_words(study), false};
+    AutoModel made{study.model, why_words(study), study.rate.hz, false};
     all[key] = {{"scene", study.scene},
                 {"exercise", options.exercise},
                 {"model", made.model},
+                {"fem_hz", made.fem_hz},
                 {"why", made.why}};
     try {
         write_text(memory, all.dump(1));

@@ -9,6 +9,17 @@
 namespace sim {
 namespace {
 
+std::string csv_line(const std::string& motion, const std::string& organ, const std::string& cheap,
+                     const std::string& dear, const TierMargin& m, const std::string& chosen) {
+    return fmt::format("{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{},{}\n", motion, organ, cheap,
+                       dear, m.steps, m.windows, m.places, m.force, m.stiffness, m.position,
+                       m.enough() ? 1 : 0, chosen);
+}
+
+std::string hz(int rate) {
+    return fmt::format("{} Hz", rate);
+}
+
 std::string csv_of(const WhyStudy& study) {
     std::string csv = "motion,organ,cheap,dear,steps,windows,places,force_of_gate,"
                       "stiffness_of_gate,position_of_gate,enough,chosen\n";
@@ -18,14 +29,17 @@ std::string csv_of(const WhyStudy& study) {
                 continue;
             for (std::size_t c = 0; c < tissue::kTierNames.size(); ++c) {
                 for (std::size_t d = c + 1; d < tissue::kTierNames.size(); ++d) {
-                    const TierMargin& m = organ.margin[c][d];
-                    csv += fmt::format("{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{},{}\n",
-                                       motion.name, organ.organ, tissue::kTierNames[c],
-                                       tissue::kTierNames[d], m.steps, m.windows, m.places, m.force,
-                                       m.stiffness, m.position, m.enough() ? 1 : 0,
-                                       tissue::name_of(organ.tier));
+                    csv += csv_line(motion.name, organ.organ, std::string(tissue::kTierNames[c]),
+                                    std::string(tissue::kTierNames[d]), organ.margin[c][d],
+                                    std::string(tissue::name_of(organ.tier)));
                 }
             }
+        }
+    }
+    for (const TriedRate& tried : study.rate.tried) {
+        for (const RateMargin& m : tried.margin) {
+            csv += csv_line(m.motion, m.organ, hz(tried.hz), hz(study.rate.asked_hz), m.margin,
+                            hz(study.rate.hz));
         }
     }
     return csv;
@@ -57,6 +71,22 @@ std::string margins(const OrganChoice& organ) {
     return text;
 }
 
+std::string rates(const RateChoice& rate) {
+    std::string text = fmt::format(
+        "\n## Steps a second\n\n{}\n\nThe chosen tiers at half the rate beside {} a second, with "
+        "the same gates.\n\n| motion | organ | steps a second | force | stiffness | position | "
+        "enough |\n|---|---|---|---|---|---|---|\n",
+        words_of(rate), rate.asked_hz);
+    for (const TriedRate& tried : rate.tried) {
+        for (const RateMargin& m : tried.margin) {
+            text += fmt::format("| {} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {} |\n", m.motion,
+                                m.organ, tried.hz, m.margin.force, m.margin.stiffness,
+                                m.margin.position, m.margin.enough() ? "yes" : "no");
+        }
+    }
+    return text;
+}
+
 std::string page_of(const WhyOptions& o, const WhyStudy& study) {
     std::string page = fmt::format(
         "# Why this model\n\nScene `{}` (hash {:.16}), FEM {} Hz, seed {}, {}. Model: `{}`.\n\n"
@@ -74,7 +104,7 @@ std::string page_of(const WhyOptions& o, const WhyStudy& study) {
                 page += "\n" + margins(organ);
         }
     }
-    return page;
+    return study.rate.tried.empty() ? page : page + rates(study.rate);
 }
 
 } // namespace

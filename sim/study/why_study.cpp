@@ -14,12 +14,6 @@
 namespace sim {
 namespace {
 
-struct Named {
-    std::string name;
-    Poses poses;
-    std::vector<TargetWish> targets;
-};
-
 LoadedScene scene_of(const WhyOptions& o) {
     LoadedScene loaded = load_scene(o.scene);
     for (SceneOrgan& organ : loaded.scene.organ) {
@@ -38,19 +32,38 @@ std::vector<TargetWish> targets_of(const tasks::Exercise& exercise) {
     return wishes;
 }
 
-// What each FEM step of an expert's attempt sees.
-Named expert(const WhyOptions& o, const std::string& exercise) {
+RunOptions attempt_of(const WhyOptions& o, const std::string& exercise, int fem_hz) {
     RunOptions run;
     run.exercise = exercise;
     run.scene = o.scene;
-    run.fem_hz = o.fem_hz;
+    run.fem_hz = fem_hz;
     run.seed = o.seed;
     run.max_seconds = o.max_seconds;
-    const std::unique_ptr<Session> session = make_session(run);
-    Named named{exercise, {}, targets_of(session->exercise)};
+    return run;
+}
+
+// What each FEM step of an expert's attempt sees.
+PosedMotion expert(const WhyOptions& o, const std::string& exercise) {
+    const std::unique_ptr<Session> session = make_session(attempt_of(o, exercise, o.fem_hz));
+    PosedMotion named{exercise, {}, targets_of(session->exercise)};
     session->poses = &named.poses;
     run_lockstep(*session, nullptr, 0);
     return named;
+}
+
+// The first fault of an expert's attempt on the chosen tiers, in words. Motions that are no
+// exercise have none.
+std::string fault_of(const WhyOptions& o, const WhyStudy& study,
+                     std::span<const std::string> exercises, const std::string& motion, int hz) {
+    if (std::find(exercises.begin(), exercises.end(), motion) == exercises.end())
+        return {};
+    RunOptions run = attempt_of(o, motion, hz);
+    run.model = study.model;
+    const Attempt::Outcome outcome = run_lockstep(*make_session(run), nullptr, 0);
+    if (outcome.row.rig.faults.empty())
+        return {};
+    return fmt::format("the expert's attempt at {} then has the fault \"{}\"", motion,
+                       outcome.row.rig.faults.front());
 }
 
 std::size_t organ_index(const WhyOptions& o, const LoadedScene& loaded) {
@@ -66,14 +79,14 @@ std::size_t organ_index(const WhyOptions& o, const LoadedScene& loaded) {
                                             o.organ, loaded.scene.id, fmt::join(soft, ", ")));
 }
 
-Named prescribed(const WhyOptions& o, const LoadedScene& loaded, const std::string& name) {
+PosedMotion prescribed(const WhyOptions& o, const LoadedScene& loaded, const std::string& name) {
     const std::size_t organ = organ_index(o, loaded);
     const std::vector<Body> bodies = make_bodies(loaded, 1.0 / o.fem_hz);
     const double radius_m = loaded.scene.tool[0].tip_radius_m;
     const glm::dvec3 place_m = o.place_m ? *o.place_m : loaded.scene.look_at_m;
     const Motion motion =
         make_motion(name, o.speed_mps, bodies[organ], place_m, o.heading, radius_m, o.depth_scale);
-    Named named{fmt::format("{} on {}", name, loaded.scene.organ[organ].name), {}, {}};
+    PosedMotion named{fmt::format("{} on {}", name, loaded.scene.organ[organ].name), {}, {}};
     const int period = 1000 / o.fem_hz;
     for (std::size_t tick = 0; tick < motion.tip_m.size(); tick += period)
         named.poses.push_back(
@@ -81,7 +94,7 @@ Named prescribed(const WhyOptions& o, const LoadedScene& loaded, const std::stri
     return named;
 }
 
-WhyMotion run_motion(const WhyOptions& o, const LoadedScene& loaded, const Named& named,
+WhyMotion run_motion(const WhyOptions& o, const LoadedScene& loaded, const PosedMotion& named,
                      void (*progress)(const std::string&)) {
     WhyMotion out{.name = named.name, .steps = static_cast<int>(named.poses.size())};
     const double step_s = 1.0 / o.fem_hz;
@@ -134,18 +147,27 @@ WhyStudy run_why_study(const WhyOptions& o, void (*progress)(const std::string&)
     std::vector<std::string> exercises = o.exercise;
     if (exercises.empty() && o.motion.empty())
         exercises = exercise_names(loaded.place);
+    std::vector<PosedMotion> motions;
     for (const std::string& exercise : exercises) {
         if (progress)
             progress(fmt::format("{}: the expert's motion", exercise));
-        study.motion.push_back(run_motion(o, loaded, expert(o, exercise), progress));
+        motions.push_back(expert(o, exercise));
     }
     for (const std::string& motion : o.motion)
-        study.motion.push_back(run_motion(o, loaded, prescribed(o, loaded, motion), progress));
-    if (study.motion.empty())
+        motions.push_back(prescribed(o, loaded, motion));
+    if (motions.empty())
         throw std::invalid_argument(
             fmt::format("scene \"{}\" has no exercise of its own: name one, or a motion of {}",
                         study.scene, fmt::join(kMotionNames, ", ")));
+    for (const PosedMotion& motion : motions)
+        study.motion.push_back(run_motion(o, loaded, motion, progress));
     decide(loaded, study);
+    const auto attempt = [&](const PosedMotion& motion, int hz) {
+        return fault_of(o, study, exercises, motion.name, hz);
+    };
+    study.rate = {.asked_hz = o.fem_hz, .hz = o.fem_hz};
+    if (o.choose_rate)
+        study.rate = choose_rate(loaded, motions, study.choice, o.fem_hz, attempt, progress);
     return study;
 }
 
@@ -157,7 +179,10 @@ std::string why_words(const WhyStudy& study) {
                 text += fmt::format("{}: {}\n", motion.name, words_of(organ));
         }
     }
-    return text + fmt::format("scene {}: --model {}\n", study.scene, study.model);
+    if (!study.rate.tried.empty())
+        text += words_of(study.rate) + "\n";
+    return text + fmt::format("scene {}: --model {} --fem-hz {}\n", study.scene, study.model,
+                              study.rate.hz);
 }
 
 } // namespace sim

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "sim/session/session.h"
-#include "sim/study/tier_choice.h"
+#include "sim/study/rate_choice.h"
 
 #include <filesystem>
 
@@ -21,7 +21,8 @@ struct WhyOptions {
     // instead of the scene's, of all organs; below 0: the scene's
     double poisson = -1.0, young_pa = -1.0;
     int fem_hz = 100;
-    std::uint64_t seed = 1; // of the expert
+    bool choose_rate = false; // fewer steps a second, where they are enough
+    std::uint64_t seed = 1;   // of the expert
     double max_seconds = 0.0;
 };
 
@@ -38,6 +39,7 @@ struct WhyStudy {
     std::vector<WhyMotion> motion{};
     ModelChoice choice{}; // per organ the dearest that a motion needs
     std::string model{};  // as --model takes it
+    RateChoice rate{};    // the rate asked for, unless choose_rate
 };
 
 /// `progress` (may be empty) hears what is being done, for a person who waits.

@@ -126,9 +126,9 @@ TEST_CASE("auto: a choice is made once, and damaged memory is begun anew") {
     o.exercise = "touch-points";
     o.fem_hz = 20;
     sim::write_text(memory, "{ not JSON");
-    const sim::AutoModel first = sim::auto_model(o, memory, quiet);
+    const sim::AutoModel first = sim::auto_model(o, false, memory, quiet);
     CHECK_FALSE(first.remembered);
-    const sim::AutoModel again = sim::auto_model(o, memory, quiet);
+    const sim::AutoModel again = sim::auto_model(o, false, memory, quiet);
     CHECK(again.remembered);
     CHECK(again.model == first.model);
     CHECK(again.why == first.why);
