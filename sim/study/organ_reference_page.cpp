@@ -161,6 +161,8 @@ nlohmann::ordered_json json_of(const OrganReferenceOptions& o, const OrganRefere
             {"rows", s.rows},
             {"rows_with_reference", s.solved},
             {"inside", {{"a1", s.a1}, {"a2", s.a2}, {"a3", s.a3}}},
+            {"places_not_settled", std::count_if(study.place.begin(), study.place.end(),
+                                                 [](const TrainerPress& p) { return !p.settled; })},
             {"places_to_the_end", s.places_to_the_end},
             {"places_to_the_end_and_inside", s.places_inside},
             {"least_reached_mm", 1e3 * s.least_reached_m},
@@ -211,6 +213,14 @@ std::string page(const OrganReferenceOptions& o, const OrganReference& study) {
         if (!study.reference[i].stopped.empty())
             out += fmt::format("\nPlace {}: the reference stopped {}.\n", i + 1,
                                study.reference[i].stopped);
+        if (!study.place[i].settled)
+            out += fmt::format("\nPlace {}: the trainer's force still changed at some depth when "
+                               "it was read.\n",
+                               i + 1);
+        if (study.place[i].warped)
+            out += fmt::format("\nPlace {}: some step of the trainer fell back to another tangent "
+                               "than the exact one.\n",
+                               i + 1);
     }
     out += fmt::format(
         "\nSteps of 10 ms with the local models of three tips that press to {} mm and slide at 31 "

@@ -104,6 +104,20 @@ TEST_CASE("organ reference: where the reference stops there is a gap, in CSV, pa
           std::string::npos);
 }
 
+TEST_CASE("organ reference: a trainer's step that was not at rest, or warped, is told") {
+    auto study = halfway();
+    CHECK(file(block(), study, "reference.md").find("Place 1:") == std::string::npos);
+    CHECK(file(block(), study, "reference.json").find("\"places_not_settled\": 0") !=
+          std::string::npos);
+    study.place[0].settled = false;
+    study.place[0].warped = true;
+    const std::string page = file(block(), study, "reference.md");
+    CHECK(page.find("Place 1: the trainer's force still changed") != std::string::npos);
+    CHECK(page.find("Place 1: some step of the trainer fell back") != std::string::npos);
+    CHECK(file(block(), study, "reference.json").find("\"places_not_settled\": 1") !=
+          std::string::npos);
+}
+
 TEST_CASE("organ reference: what cannot be pressed is refused with the value") {
     auto o = block();
     o.press.radius_m = 0.5;
