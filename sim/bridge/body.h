@@ -38,6 +38,7 @@ struct SoftBody {
     std::size_t answers = 0;                                        // tools with rows
     int answers_of = -1;                                            // the linearisation
     int answers_age = 0;                                            // steps since
+    double answers_moved_m = 0.0;                                   // moved_m then
     int linearisations = 0; // counts them, so that what rests on one knows when it is old
     double moved_m = 0.0;   // how far anything has moved, all in all
     int basis_count = 0;    // counts bases, so that what rests on one knows when it is old

@@ -71,3 +71,16 @@ TEST_CASE("find-tubes: organs that meet change no event of it") {
     CHECK(tissue.organs->solves > 0); // the flap pressed on what is below it
     CHECK(tissue.organs->rows.left_out == 0);
 }
+
+TEST_CASE("find-tubes: a quadratic flap is lifted in steps of 20 ms, and every one is solved") {
+    sim::RunOptions o;
+    o.exercise = "find-tubes";
+    o.model = "corotated,flap=quadratic";
+    o.fem_hz = 50;
+    const auto session = sim::make_session(o);
+    const auto outcome = sim::run_lockstep(*session, nullptr, 0);
+    CHECK(outcome.row.completed);
+    CHECK(outcome.row.valid);
+    CHECK(session->worst_linear_residual <= sim::kMostLinearResidual);
+    CHECK(session->inverted_steps == 0);
+}
