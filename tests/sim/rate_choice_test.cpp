@@ -11,13 +11,13 @@ using glm::dvec3;
 
 constexpr double kStep_s = 0.01;
 
-// A tool that presses organ 0, every `stride`-th of 200 steps; the force rises by 12.5 mN in each.
+// A tool that presses organ 0, every `stride`-th of 200 steps; the force rises by 40 mN in each.
 sim::TierTrack pressed(int stride, double force_share) {
     sim::TierTrack track;
     for (int i = 0; i < 200; i += stride) {
         sim::TierSample s{};
         s.body = {0, -1, -1};
-        s.force_n[0] = {0.0, 0.0, force_share * 0.0125 * (i + 1)};
+        s.force_n[0] = {0.0, 0.0, force_share * 0.04 * (i + 1)};
         track.step.push_back(s);
     }
     return track;
