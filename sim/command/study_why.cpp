@@ -30,6 +30,8 @@ void add_margin(const TierMargin& m, nlohmann::ordered_json& to) {
 nlohmann::ordered_json json_of(const WhyStudy& study) {
     nlohmann::ordered_json json{
         {"scene", study.scene}, {"model", study.model}, {"fem_hz", study.rate.hz}};
+    if (!study.rate.tried.empty())
+        json["rate_why"] = words_of(study.rate);
     for (const TriedRate& tried : study.rate.tried) {
         for (const RateMargin& m : tried.margin) {
             nlohmann::ordered_json rate{{"hz", tried.hz}, {"motion", m.motion}, {"organ", m.organ}};

@@ -1,9 +1,9 @@
 // sim/study/rate_choice.h
 // How many FEM steps a second a scene needs, once its tiers are chosen: half as many are enough if
 // the same motion through the same tiers then differs from the rate asked for by no more than the
-// gates of sim/study/tier_choice.h. An implicit step damps what is faster than itself, so what
-// moves by itself, a lifted flap, needs more than what follows the tools. Called by the choice of
-// models; no threads, and nothing of a clock decides anything.
+// gates of sim/study/tier_choice.h. An implicit step damps what is faster than itself: a blow needs
+// more steps than a press. Called by the choice of models; no threads, and nothing of a clock
+// decides anything.
 #pragma once
 
 #include "sim/study/tier_choice.h"
