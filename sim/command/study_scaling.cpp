@@ -18,7 +18,7 @@ struct ScalingArguments {
     std::string wave = "radial", out;
 };
 
-void say(const ScalingRow& r) {
+void say_scaling(const ScalingRow& r) {
     fmt::print(stderr,
                "{:<5} round {}  {:<24} mean {:>8.0f} ns  p99 {:>8.0f}  cold {:>8.0f}  refit "
                "{:>8.3f} ms\n",
@@ -30,7 +30,7 @@ void scaling(ScalingArguments& a) {
     ScalingOptions& o = a.options;
     o.breathing = {1e-3 * a.breathe_mm, wave_of(a.wave)};
     o.peer_dir = peer_dir();
-    const ScalingStudy study = run_scaling_study(o, say);
+    const ScalingStudy study = run_scaling_study(o, say_scaling);
     std::filesystem::create_directories(a.out);
     for (const auto& [name, text] : scaling_files(o, study))
         write_text(std::filesystem::path(a.out) / name, text);

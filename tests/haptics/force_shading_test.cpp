@@ -5,6 +5,7 @@
 // beside the facet's middle it leans by tan(phi) = s / A.
 #include "haptics/contact/vertex_normals.h"
 #include "haptics/contact/virtual_proxy.h"
+#include "tests/haptics/effort.h"
 #include "tests/haptics/proxy_bench.h"
 
 #include <cmath>
@@ -199,7 +200,7 @@ TEST_CASE("force shading: the proxy never gets below a triangle, in friction or 
         proxy_bench::Hand hand{std::mt19937_64(seed)};
         int touched = 0, leaning = 0;
         double inside_m = -1.0, nearest_m = b.input.radius_m;
-        for (int i = 0; i < 4000; ++i) {
+        for (int i = 0; i < effort::cases(4000); ++i) {
             const auto& s = b.lead(step_virtual_proxy, hand.next());
             touched += s.touching;
             leaning += s.touching && s.contacts == 1 &&
@@ -210,8 +211,8 @@ TEST_CASE("force shading: the proxy never gets below a triangle, in friction or 
             if (skin.hit())
                 nearest_m = std::min(nearest_m, skin.distance_m);
         }
-        CHECK(touched > 1000);
-        CHECK(leaning > 300);
+        CHECK(touched > effort::cases(1000));
+        CHECK(leaning > effort::cases(300));
         CHECK(inside_m < 0.0);
         CHECK(nearest_m > b.input.radius_m * (1.0 - 1e-9));
     }

@@ -75,9 +75,9 @@ double tools_apart_m(const Scene& s, int a, int b) {
 TEST_CASE("safe tools: a shaft dragged over bumps never has a triangle inside") {
     for (const double radius_m : {5e-4, 2.5e-3})
         for (const double tip_radius_m : {0.0, 3e-3}) {
-            const Dragged d = drag(radius_m, tip_radius_m, false, 6000, 7);
+            const Dragged d = drag(radius_m, tip_radius_m, false, effort::cases(6000), 7);
             CHECK(d.least_m > 0.0);
-            CHECK(d.touched > 1000);
+            CHECK(d.touched > effort::cases(1000));
             CHECK(d.most_step_n < 0.3);
         }
 }
@@ -85,9 +85,9 @@ TEST_CASE("safe tools: a shaft dragged over bumps never has a triangle inside") 
 TEST_CASE("safe tools: nor if the bumps breathe") {
     for (const double radius_m : {5e-4, 2.5e-3})
         for (const double tip_radius_m : {0.0, 3e-3}) {
-            const Dragged d = drag(radius_m, tip_radius_m, true, 6000, 8);
+            const Dragged d = drag(radius_m, tip_radius_m, true, effort::cases(6000), 8);
             CHECK(d.least_m > 0.0);
-            CHECK(d.touched > 1000);
+            CHECK(d.touched > effort::cases(1000));
         }
 }
 
