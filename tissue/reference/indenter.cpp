@@ -53,7 +53,7 @@ PressPoint measured(const ReferenceModel& model, std::span<const dvec3> moved_m,
                     const TipContact& contact) {
     PressPoint out;
     double area_m2 = 0.0;
-    for (const ContactPoint& p : contact.points) {
+    for (const FacePoint& p : contact.points) {
         const dvec3 x = place_of(model.mesh, p, moved_m);
         const Traction t = traction_at(contact, p, x);
         out.force_n -= p.area_m2 * (t.pressure_pa * t.normal + t.friction_pa);
@@ -130,7 +130,7 @@ double touch_depth_m(const QuadraticMesh& mesh, const Press& p) {
     check_press(p);
     const std::vector<dvec3> rest(mesh.rest_m.size(), dvec3{0.0});
     double first_m = 0.0;
-    for (const ContactPoint& point : contact_points(mesh, p.place_m, reach_m(p))) {
+    for (const FacePoint& point : contact_points(mesh, p.place_m, reach_m(p))) {
         const dvec3 away = place_of(mesh, point, rest) - p.place_m;
         const double along = glm::dot(away, p.into);
         const double across_m2 = glm::dot(away, away) - along * along;

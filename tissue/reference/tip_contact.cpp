@@ -39,7 +39,7 @@ std::array<double, 6> face_shapes(const std::array<double, 3>& L) noexcept {
 }
 
 void add_face(const QuadraticMesh& mesh, std::uint32_t tet,
-              const std::array<std::uint8_t, 6>& local, std::vector<ContactPoint>& points) {
+              const std::array<std::uint8_t, 6>& local, std::vector<FacePoint>& points) {
     const Tet10& t = mesh.tets[tet];
     const dvec3 a = mesh.rest_m[t[local[0]]];
     const double area_m2 =
@@ -61,7 +61,7 @@ dmat3 gap_curvature(const Tip& tip, const dvec3& x, const Gap& gap) noexcept {
 }
 
 // Across the tip's surface where the point was bound.
-dmat3 tangent_plane(const TipContact& c, const ContactPoint& p) noexcept {
+dmat3 tangent_plane(const TipContact& c, const FacePoint& p) noexcept {
     const dvec3 n = gap_at(c.tip, c.tip.centre_m + p.bound_at_m).normal;
     return dmat3(1.0) - glm::outerProduct(n, n);
 }
@@ -72,7 +72,7 @@ struct PointTerms {
     bool acts = false;
 };
 
-PointTerms terms_at(const TipContact& c, const ContactPoint& p, const dvec3& x,
+PointTerms terms_at(const TipContact& c, const FacePoint& p, const dvec3& x,
                     bool projected) noexcept {
     const double k = c.penalty_papm;
     const Traction t = traction_at(c, p, x);
@@ -99,8 +99,8 @@ PointTerms terms_at(const TipContact& c, const ContactPoint& p, const dvec3& x,
 
 } // namespace
 
-std::vector<ContactPoint> contact_points(const QuadraticMesh& mesh, const dvec3& place_m,
-                                         double reach_m) {
+std::vector<FacePoint> contact_points(const QuadraticMesh& mesh, const dvec3& place_m,
+                                      double reach_m) {
     TetMesh corners{mesh.rest_m, {}};
     for (const Tet10& t : mesh.tets)
         corners.tets.push_back({t[0], t[1], t[2], t[3]});
@@ -109,7 +109,7 @@ std::vector<ContactPoint> contact_points(const QuadraticMesh& mesh, const dvec3&
         std::sort(f.begin(), f.end());
     std::sort(faces.begin(), faces.end());
 
-    std::vector<ContactPoint> points;
+    std::vector<FacePoint> points;
     for (std::uint32_t e = 0; e < mesh.tets.size(); ++e) {
         for (const auto& local : kFaceNodes) {
             Triangle key{mesh.tets[e][local[0]], mesh.tets[e][local[1]], mesh.tets[e][local[2]]};
@@ -132,7 +132,7 @@ Gap gap_at(const Tip& tip, const dvec3& x_m) noexcept {
     return {distance - tip.radius_m, distance > 0.0 ? away / distance : -tip.shaft};
 }
 
-dvec3 place_of(const QuadraticMesh& mesh, const ContactPoint& point,
+dvec3 place_of(const QuadraticMesh& mesh, const FacePoint& point,
                std::span<const dvec3> moved_m) noexcept {
     dvec3 x{0.0};
     for (std::size_t a = 0; a < 6; ++a) {
@@ -142,7 +142,7 @@ dvec3 place_of(const QuadraticMesh& mesh, const ContactPoint& point,
     return x;
 }
 
-Traction traction_at(const TipContact& c, const ContactPoint& p, const dvec3& x_m) noexcept {
+Traction traction_at(const TipContact& c, const FacePoint& p, const dvec3& x_m) noexcept {
     const Gap gap = gap_at(c.tip, x_m);
     Traction out{std::max(0.0, p.pressure_pa - c.penalty_papm * gap.value_m), gap.normal};
     if (!p.bound)
@@ -157,7 +157,7 @@ Traction traction_at(const TipContact& c, const ContactPoint& p, const dvec3& x_
 
 void learn_contact(const ReferenceModel& model, std::span<const dvec3> moved_m, double friction,
                    TipContact& contact) noexcept {
-    for (ContactPoint& p : contact.points) {
+    for (FacePoint& p : contact.points) {
         const dvec3 x = place_of(model.mesh, p, moved_m);
         const Traction t = traction_at(contact, p, x);
         // what friction does not hold has slipped
@@ -175,7 +175,7 @@ double contact_energy_j(const ReferenceModel& model, const TipContact& contact,
                         std::span<const dvec3> moved_m) noexcept {
     const double k = contact.penalty_papm;
     double sum = 0.0;
-    for (const ContactPoint& p : contact.points) {
+    for (const FacePoint& p : contact.points) {
         const Traction t = traction_at(contact, p, place_of(model.mesh, p, moved_m));
         sum +=
             0.5 * p.area_m2 / k * (t.pressure_pa * t.pressure_pa - p.pressure_pa * p.pressure_pa);
@@ -191,7 +191,7 @@ void linearize_contact(const ReferenceModel& model, const TipContact& contact,
                        std::span<const dvec3> moved_m, bool projected, std::span<double> slope_n,
                        std::span<double> stiffness) noexcept {
     std::fill(slope_n.begin(), slope_n.end(), 0.0);
-    for (const ContactPoint& p : contact.points) {
+    for (const FacePoint& p : contact.points) {
         const PointTerms terms = terms_at(contact, p, place_of(model.mesh, p, moved_m), projected);
         if (!terms.acts)
             continue;

@@ -22,7 +22,7 @@ struct Tip {
     double radius_m = 0.0;
 };
 
-struct ContactPoint {
+struct FacePoint {
     std::uint32_t tet = 0;
     std::array<std::uint8_t, 6> local{}; // nodes of the face within the tet
     std::array<double, 6> shape{};
@@ -34,14 +34,14 @@ struct ContactPoint {
 };
 
 struct TipContact {
-    std::vector<ContactPoint> points;
+    std::vector<FacePoint> points;
     Tip tip;
     double penalty_papm = 0.0;
 };
 
 /// Points of all faces with a corner within `reach_m` of `place_m`, at rest.
-std::vector<ContactPoint> contact_points(const QuadraticMesh& mesh, const glm::dvec3& place_m,
-                                         double reach_m);
+std::vector<FacePoint> contact_points(const QuadraticMesh& mesh, const glm::dvec3& place_m,
+                                      double reach_m);
 
 /// Gap and its slope, the outward unit normal of the tip's surface there.
 struct Gap {
@@ -51,7 +51,7 @@ struct Gap {
 Gap gap_at(const Tip& tip, const glm::dvec3& x_m) noexcept;
 
 /// Where the point is, for displacements of the nodes.
-glm::dvec3 place_of(const QuadraticMesh& mesh, const ContactPoint& point,
+glm::dvec3 place_of(const QuadraticMesh& mesh, const FacePoint& point,
                     std::span<const glm::dvec3> moved_m) noexcept;
 
 /// What the tip's surface does per area to the body at `x_m`, Pa.
@@ -61,7 +61,7 @@ struct Traction {
     glm::dvec3 friction_pa{0.0}; // against the way
     glm::dvec3 way_m{0.0};       // along the tip since it was bound
 };
-Traction traction_at(const TipContact& contact, const ContactPoint& point,
+Traction traction_at(const TipContact& contact, const FacePoint& point,
                      const glm::dvec3& x_m) noexcept;
 
 /// What is known after a step: pressures, limits for this `friction` (may be infinite), slip.
