@@ -290,3 +290,46 @@ TEST_CASE("a state that is not finite ends its step without a descent") {
     CHECK(end.iterations == 0);
     CHECK_FALSE(body.system.factored);
 }
+
+TEST_CASE("a strip on the edge of buckling is not thrown by its all but singular tangent") {
+    // long, thin, held at both ends and shortened along itself by `strain`: where its tangent
+    // ceases to be positive definite, Newton's step under a small load aside is as long as one
+    // likes
+    const dvec3 size_m{0.1, 0.01, 0.004};
+    const tissue::TetMesh mesh = tissue::box_mesh(size_m, {20, 2, 1});
+    const auto ends =
+        bodies::anchors(mesh, [&](dvec3 x) { return x.x < 1e-9 || x.x > size_m.x - 1e-9; });
+    const auto at_strain = [&](double strain) {
+        Body body(mesh, elastic(10e3, 0.45), ends);
+        for (dvec3& x : body.state.position_m)
+            x.x *= 1.0 - strain;
+        body.load_n.assign(body.du.size(), 0.0);
+        for (std::size_t i = 0; i < mesh.rest_m.size(); ++i)
+            if (body.model.dof[i] >= 0)
+                body.load_n[body.model.dof[i] + 2] = 1e-5;
+        body.begin(0.05);
+        return body;
+    };
+    double below = 0.0, above = 0.5;
+    REQUIRE(at_strain(below).system.exact_tangent);
+    REQUIRE_FALSE(at_strain(above).system.exact_tangent);
+    int thrown = 0, caught = 0;
+    while (above - below > 1e-12) {
+        const double strain = 0.5 * (below + above);
+        Body body = at_strain(strain);
+        const bool definite = body.system.exact_tangent;
+        (definite ? below : above) = strain;
+        Body bare = at_strain(strain);
+        tissue::free_motion(bare.model, bare.state, bare.system, bare.du, bare.load_n);
+        tissue::advance(bare.model, bare.du, 0.05, bare.state);
+        const double before_j = body.energy_j();
+        thrown += bare.energy_j() > 2.0 * before_j + bodies::inner(bare.load_n, bare.du);
+        caught += body.step().iterations > 0;
+        CHECK(body.energy_j() < 1.2 * before_j + bodies::inner(body.load_n, body.du));
+        CHECK(body.system.inverted == 0);
+        for (std::size_t i = 0; i < mesh.rest_m.size(); ++i)
+            CHECK(glm::distance(body.state.position_m[i], mesh.rest_m[i]) < 0.05);
+    }
+    CHECK(thrown > 3); // negative control: the bare step goes there
+    CHECK(caught >= thrown);
+}

@@ -3,7 +3,9 @@
 // contact solve, by studies and tests after free_motion(). A step with inverted tets before or
 // after it is out of reach of its one Newton iteration and is made again here by descent. So is one
 // that gains energy while a body recovers, from when it was inverted until its caller finds it at
-// rest and says so. Every other step is advance() and linearize(), bit for bit.
+// rest and says so, and at any time one that gains a tenth of all that there is and of what the
+// load gave: a tangent may be all but singular, as of a flap that is about to buckle, and then its
+// step leads anywhere. Every other step is advance() and linearize(), bit for bit.
 //
 // Implicit Euler minimises the incremental potential (Kane et al. 2000; Gast et al. 2015)
 //   E(d) = |d/dt - v|_M^2 / 2 + d.C d / (2 dt) + W(x + d) - f.d,   v' = d/dt
