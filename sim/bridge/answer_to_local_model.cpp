@@ -57,10 +57,15 @@ glm::dvec3 rest_place(const Body& body, const tissue::ContactPoint& at) noexcept
            at.weight.z * skin.rest_m[c[2]];
 }
 
-// How far a quadratic body may move from where the columns of its modes were solved for, while
-// their contact stays: what solves cost is a multiple of the step, and K in the space is that of
-// every step.
-constexpr double kBasisDrift_m = 5e-3;
+// How far a body may move from where the columns of its modes were solved for, while their contact
+// stays: what solves cost is a multiple of the step, and K in the space is that of every step.
+constexpr double kBasisDrift_m = 1e-3;
+
+// Columns of a factor that is still there are what solving anew would give.
+bool of_this_factor(const SoftBody& soft, const BasisPlace& place) noexcept {
+    return tissue::tier_of(soft.solid) != tissue::Tier::quadratic &&
+           place.of == soft.linearisations;
+}
 
 // How much the columns of a contact are worn: 1 is where it has left the middle of its star, or
 // the body has drifted so far. None: infinitely.
@@ -73,11 +78,8 @@ double wear(const Body& body, const tissue::BasisContact& contact) noexcept {
     const double middle_m =
         kMiddle * arm_of_star_m(body, static_cast<int>(contact.centre.triangle));
     const double slid = glm::distance(rest_place(body, contact.centre), place.rest_m) / middle_m;
-    const bool drifts = tissue::tier_of(soft.solid) == tissue::Tier::quadratic;
-    if (!drifts && soft.basis_of != soft.linearisations) // another factor
-        return std::numeric_limits<double>::infinity();
     const double drifted = (soft.moved_m - place.moved_m) / kBasisDrift_m;
-    return drifts ? std::max(slid, drifted) : slid;
+    return of_this_factor(soft, place) ? slid : std::max(slid, drifted);
 }
 
 // Which columns to solve for: one contact's in a step, so that steps are alike, or those that
@@ -103,6 +105,12 @@ bool choose_columns(const Body& body, std::span<tissue::BasisContact> contacts) 
     }
     if (!any && worst)
         worst->kept = tissue::KeptColumns::about;
+    const SoftBody& soft = *body.soft;
+    for (tissue::BasisContact& contact : contacts) {
+        if (contact.kept == tissue::KeptColumns::all &&
+            !of_this_factor(soft, soft.basis_place[contact.slot]))
+            contact.kept = tissue::KeptColumns::space;
+    }
     return any || worst;
 }
 
@@ -140,9 +148,10 @@ void compute_basis(Body& body, std::span<tissue::BasisContact> contacts) noexcep
             },
             soft.solid);
         for (const tissue::BasisContact& contact : contacts) {
-            if (contact.kept != tissue::KeptColumns::all)
+            if (!tissue::serve(contact.kept))
                 soft.basis_place[contact.slot] = {true, contact.held,
-                                                  rest_place(body, contact.centre), soft.moved_m};
+                                                  rest_place(body, contact.centre), soft.moved_m,
+                                                  soft.linearisations};
         }
     }
     tissue::turn_shapes(soft.basis, tissue::unknowns(soft.solid), soft.shape_by_unknown);

@@ -21,6 +21,7 @@ struct BasisPlace {
     bool known = false, held = false;
     glm::dvec3 rest_m{0.0};
     double moved_m = 0.0; // SoftBody::moved_m there
+    int of = -1;          // SoftBody::linearisations there
 };
 
 /// What deforms. Absent for a rigid body.

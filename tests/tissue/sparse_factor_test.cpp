@@ -1,5 +1,6 @@
 // tests/tissue/sparse_factor_test.cpp
 #include "tissue/solver/sparse_factor.h"
+#include "tissue/solver/sparse_products.h"
 
 #include <cmath>
 #include <doctest/doctest.h>
@@ -163,4 +164,29 @@ TEST_CASE("a moved factor keeps its answer") {
     b.solve(x, 1);
     CHECK(x[0] == doctest::Approx(25.0).scale(0.0));
     CHECK(b.factor(m.values));
+}
+
+TEST_CASE("vectors side by side are multiplied as if alone, however many, in place too") {
+    const Matrix m = random_dominant(97, 5, 3);
+    const auto n = static_cast<std::size_t>(m.pattern.size);
+    std::vector<double> scratch(2 * tissue::kProductLanes * n, 1.0); // whatever stood there
+    for (const std::size_t count : {0u, 1u, 7u, 8u, 9u, 33u}) {
+        std::vector<std::vector<double>> x, y(count, std::vector<double>(n, 1.0));
+        std::vector<const double*> from;
+        std::vector<double*> to;
+        for (std::size_t j = 0; j < count; ++j)
+            x.push_back(random_vector(n, static_cast<unsigned>(10 + j)));
+        std::vector<std::vector<double>> in_place = x;
+        for (std::size_t j = 0; j < count; ++j) {
+            from.push_back(j % 2 ? in_place[j].data() : x[j].data());
+            to.push_back(j % 2 ? in_place[j].data() : y[j].data());
+        }
+        tissue::multiply_each(m.pattern, m.values, from, to, scratch);
+        for (std::size_t j = 0; j < count; ++j) {
+            std::vector<double> expected(n);
+            tissue::multiply(m.pattern, m.values, x[j], expected);
+            for (std::size_t i = 0; i < n; ++i)
+                CHECK(std::abs(to[j][i] - expected[i]) < 1e-12);
+        }
+    }
 }

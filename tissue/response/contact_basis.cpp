@@ -5,16 +5,20 @@
 // Everything is done in the coordinates y = M^(1/2) x, in which M-orthonormal is orthonormal, and
 // every column y is carried together with z = M^(-1/2) A x, which is known: it is the load that
 // made it. So V^T A V = Q^T Z needs no product with the sparse matrix, and its eigenvectors are
-// those of V^T K V, because A = m M + k K with m = 1/dt^2 + alpha/dt and k = 1 + beta/dt.
+// those of V^T K V, because A = m M + k K with m = 1/dt^2 + alpha/dt and k = 1 + beta/dt. Columns
+// that were solved for with another factor are multiplied: a Galerkin basis may be of any columns,
+// as long as what A makes of them is what it makes of them now.
 //
 // Columns are orthonormalised by Cholesky factors of their Gram matrix, twice (CholeskyQR2,
 // Yamamoto et al. 2015), with pivoting inside the blocks: it is BLAS 3 throughout, and a relative
 // size of 1e-6 is 1e-12 in the Gram matrix, 1e4 above its roundoff.
 #include "tissue/response/basis_parts.h"
+#include "tissue/solver/sparse_products.h"
 
 #include <algorithm>
 #include <cblas.h>
 #include <cmath>
+#include <functional>
 
 namespace tissue {
 namespace {
@@ -42,23 +46,25 @@ void next_moment(const Work& w, int from, int to) noexcept {
         z[i] = w.mass[i] * y[i];
 }
 
-// y = A^-1 z for `count` columns, then both scaled to unit M-norm of y. A load that moves nothing
-// stays zero, and is dropped later.
+// Both scaled to unit M-norm of y, which is A^-1 z. A load that moves nothing stays zero, and is
+// dropped later.
+void scale_column(std::span<const double> mass, double* y, double* z) noexcept {
+    double norm2 = 0.0;
+    for (std::size_t i = 0; i < mass.size(); ++i)
+        norm2 += mass[i] * y[i] * y[i];
+    const double scale = norm2 > 0.0 ? 1.0 / std::sqrt(norm2) : 0.0;
+    for (std::size_t i = 0; i < mass.size(); ++i) {
+        y[i] *= scale;
+        z[i] *= scale;
+    }
+}
+
+// y = A^-1 z for `count` columns.
 void solve_columns(const Work& w, int first, int count, SparseFactor& factor) noexcept {
     std::copy_n(w.z[first], w.z.n * static_cast<std::size_t>(count), w.y[first]);
     factor.solve(w.y.range(first, count), count);
-    for (int j = first; j < first + count; ++j) {
-        double* y = w.y[j];
-        double* z = w.z[j];
-        double norm2 = 0.0;
-        for (std::size_t i = 0; i < w.y.n; ++i)
-            norm2 += w.mass[i] * y[i] * y[i];
-        const double scale = norm2 > 0.0 ? 1.0 / std::sqrt(norm2) : 0.0;
-        for (std::size_t i = 0; i < w.y.n; ++i) {
-            y[i] *= scale;
-            z[i] *= scale;
-        }
-    }
+    for (int j = first; j < first + count; ++j)
+        scale_column(w.mass, w.y[j], w.z[j]);
 }
 
 void gram(const double* q, std::size_t n, int columns, SmallMatrix& out) noexcept {
@@ -101,17 +107,23 @@ void fill_masses(const CorotatedModel& model, const CorotatedState& state, const
     }
 }
 
+// The load of a contact's j-th column.
+void load_first(const CorotatedModel& model, const ContactSurface& surface,
+                const BasisContact& contact, int j, std::span<double> load) noexcept {
+    if (j < kCentreLoads)
+        load_centre(model.dof, surface, contact, j, load);
+    else
+        load_star(model.dof, surface, contact, j - kCentreLoads, load);
+}
+
 // One moment's loads of a contact, from column `at`; those of the moment before begin at `last`.
 void loads_of(const CorotatedModel& model, const ContactSurface& surface,
               const BasisContact& contact, int moment, int last, int at, const Work& w) noexcept {
     for (int k = 0; k < columns_of(contact, moment); ++k) {
-        const std::span<double> load = w.z.range(at + k, 1);
         if (moment > 0)
             next_moment(w, last + k, at + k);
-        else if (k < kCentreLoads)
-            load_centre(model.dof, surface, contact, k, load);
         else
-            load_star(model.dof, surface, contact, k - kCentreLoads, load);
+            load_first(model, surface, contact, k, w.z.range(at + k, 1));
     }
 }
 
@@ -139,7 +151,7 @@ void solve_new(std::span<const BasisContact> contacts, int moment,
     for (std::size_t c = 0; c < contacts.size(); ++c) {
         int count = 0;
         const std::size_t from = c;
-        for (; c < contacts.size() && contacts[c].kept != KeptColumns::all; ++c)
+        for (; c < contacts.size() && contacts[c].kept == KeptColumns::none; ++c)
             count += columns_of(contacts[c], moment);
         if (count == 0)
             continue;
@@ -150,6 +162,64 @@ void solve_new(std::span<const BasisContact> contacts, int moment,
     }
 }
 
+// z = A y of the columns that another factor made.
+void multiply_followed(const CorotatedModel& model, const CorotatedSystem& system,
+                       std::span<const BasisContact> contacts, const Work& w,
+                       ContactBasis& basis) noexcept {
+    std::array<const double*, kMaxBasis> from{};
+    std::array<double*, kMaxBasis> to{};
+    std::size_t count = 0;
+    int column = 0;
+    for (int moment = 0; moment < kMoments; ++moment) {
+        for (const BasisContact& contact : contacts) {
+            for (int k = 0; k < columns_of(contact, moment); ++k, ++column) {
+                if (contact.kept != KeptColumns::space)
+                    continue;
+                from[count] = w.y[column];
+                to[count++] = w.z[column];
+            }
+        }
+    }
+    multiply_each(model.pattern, system.matrix, std::span(from).first(count),
+                  std::span(to).first(count), basis.shape);
+}
+
+// All columns of contacts of which something is known, in one solve: later moments rest on those of
+// before. A solve reads the factor, whatever the number of its columns.
+void solve_at_once(const CorotatedModel& model, const ContactSurface& surface,
+                   std::span<const BasisContact> contacts, SparseFactor& factor, const Work& w,
+                   ContactBasis& basis) noexcept {
+    const std::size_t n = w.y.n;
+    int columns = 0;
+    std::array<double*, kMaxBasis> y{}, z{}; // where each is kept
+    const Columns load{basis.shape.data(), n};
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
+        if (contacts[c].kept != KeptColumns::about)
+            continue;
+        for (int moment = 0, k = 0; moment < kMoments; ++moment) {
+            const int before = first_of(contacts[c].held, std::max(0, moment - 1));
+            for (int j = 0; j < columns_of(contacts[c], moment); ++j, ++k, ++columns) {
+                y[columns] = basis.column.data() + kept_at(contacts, c, k, n);
+                z[columns] = basis.mass_column.data() + kept_at(contacts, c, k, n);
+                const double* last = basis.column.data() + kept_at(contacts, c, before + j, n);
+                if (moment > 0)
+                    std::transform(last, last + n, w.mass.data(), load[columns],
+                                   std::multiplies<>());
+                else
+                    load_first(model, surface, contacts[c], j, load.range(columns, 1));
+            }
+        }
+    }
+    for (int j = 0; j < columns; ++j)
+        std::copy_n(load[j], n, z[j]);
+    factor.solve(load.range(0, columns), columns);
+    for (int j = 0; j < columns; ++j) {
+        std::copy_n(load[j], n, y[j]);
+        scale_column(w.mass, y[j], z[j]);
+    }
+    basis.solved += columns;
+}
+
 // The raw columns and their loads, moment by moment. `blocks`: columns of each moment. Returns how
 // many in all.
 int raw_columns(const CorotatedModel& model, const ContactSurface& surface,
@@ -157,12 +227,13 @@ int raw_columns(const CorotatedModel& model, const ContactSurface& surface,
                 ContactBasis& basis, std::array<int, kMoments>& blocks) noexcept {
     std::array<int, kMaxContacts> last{}; // first column of each contact, one moment before
     int columns = 0;
+    solve_at_once(model, surface, contacts, factor, w, basis);
     for (int moment = 0; moment < kMoments; ++moment) {
         const int first = columns;
         std::array<int, kMaxContacts> begin{};
         for (std::size_t c = 0; c < contacts.size(); ++c) {
             begin[c] = columns;
-            if (contacts[c].kept == KeptColumns::all)
+            if (contacts[c].kept != KeptColumns::none)
                 recall(contacts, c, moment, basis, columns, w);
             else
                 loads_of(model, surface, contacts[c], moment, last[c], columns, w);
@@ -198,6 +269,7 @@ void compute_contact_basis(const CorotatedModel& model, const ContactSurface& su
     fill_masses(model, state, w);
     std::array<int, kMoments> blocks{};
     const int columns = raw_columns(model, surface, contacts, system.factor, w, basis, blocks);
+    multiply_followed(model, system, contacts, w, basis);
     for (int j = 0; j < columns; ++j) {
         for (std::size_t i = 0; i < n; ++i) {
             w.y[j][i] *= w.root[i];
@@ -232,6 +304,7 @@ void compute_contact_basis(const CorotatedModel& model, const ContactSurface& su
 
 void refresh_contact_basis(const CorotatedModel& model, const CorotatedState& state,
                            const CorotatedSystem& system, ContactBasis& basis) noexcept {
+    basis.solved = 0;
     const Work w = split(basis, static_cast<std::size_t>(model.unknowns));
     fill_masses(model, state, w);
     coefficients(basis, system.internal_n, basis.residual);

@@ -23,10 +23,15 @@ inline constexpr int kModesPerContact = 11;
 inline constexpr int kMaxContacts = 3;
 inline constexpr int kMaxBasis = kModesPerContact * kMaxContacts;
 
-/// Whether the columns of a contact from before serve: as they are, or only as what later moments
-/// of a quadratic body rest on. Of a corotated body all serve as long as the factor is the same,
-/// none with another.
-enum class KeptColumns : std::uint8_t { none, about, all };
+/// Whether the columns of a contact from before serve. `about`: only as what later moments rest on,
+/// so that all are solved for at once. `space`: of a corotated body, solved for with
+/// another factor: as columns of a basis they serve, what A makes of them is found anew. `all`: as
+/// they are, of a corotated body with the same factor.
+enum class KeptColumns : std::uint8_t { none, about, space, all };
+/// Whether the columns of a contact are not solved for.
+constexpr bool serve(KeptColumns kept) noexcept {
+    return kept >= KeptColumns::space;
+}
 
 struct BasisContact {
     ContactPoint centre;

@@ -118,7 +118,7 @@ void renew_columns(const QuadraticModel& model, const ContactSurface& surface,
         const BasisContact& contact = contacts[c];
         const int slot = slot_of(contacts, c);
         const bool none = contact.kept == KeptColumns::none;
-        for (int k = 0; contact.kept != KeptColumns::all && k < kModesPerContact; ++k) {
+        for (int k = 0; !serve(contact.kept) && k < kModesPerContact; ++k) {
             const int moment = moment_of(contact.held, k);
             const bool star = moment == 0 && k >= kCentreLoads;
             if (none && !star)
@@ -211,6 +211,22 @@ bool project(const QuadraticModel& model, const Work& w, const double* q, int ra
     return positive_eigen(turn, rank, value) != 0;
 }
 
+// Residual and rate of the modes.
+void read_state(const QuadraticModel& model, const QuadraticState& state, QuadraticSystem& system,
+                ContactBasis& basis) noexcept {
+    const auto n = static_cast<std::size_t>(model.unknowns);
+    const Work w = split(basis, n);
+    const std::span<double> velocity = w.x.range(0, 1), vector{w.vector.data(), n};
+    for (std::size_t i = 0; i < model.dof.size(); ++i) {
+        for (int k = 0; model.dof[i] >= 0 && k < 3; ++k)
+            velocity[model.dof[i] + k] = state.velocity_mps[i][k];
+    }
+    mass_product(model, velocity, system, vector);
+    coefficients(basis, vector, basis.rate);
+    internal_force(model, system, vector);
+    coefficients(basis, vector, basis.residual);
+}
+
 // The modes of M-orthonormal columns in basis.shape; of none if K there is not positive enough even
 // without geometric stiffness.
 void find_modes(const QuadraticModel& model, const Work& w, int rank, const QuadraticState& state,
@@ -236,7 +252,7 @@ void find_modes(const QuadraticModel& model, const Work& w, int rank, const Quad
         basis.lambda[j] = (value[j] - of.m) / of.k;
     remember_modes(model, basis.shape, {basis.lambda.data(), static_cast<std::size_t>(rank)},
                    system);
-    refresh_contact_basis(model, state, system, basis);
+    read_state(model, state, system, basis);
 }
 
 } // namespace
@@ -267,17 +283,8 @@ void compute_contact_basis(const QuadraticModel& model, const ContactSurface& su
 
 void refresh_contact_basis(const QuadraticModel& model, const QuadraticState& state,
                            QuadraticSystem& system, ContactBasis& basis) noexcept {
-    const auto n = static_cast<std::size_t>(model.unknowns);
-    const Work w = split(basis, n);
-    const std::span<double> velocity = w.x.range(0, 1), vector{w.vector.data(), n};
-    for (std::size_t i = 0; i < model.dof.size(); ++i) {
-        for (int k = 0; model.dof[i] >= 0 && k < 3; ++k)
-            velocity[model.dof[i] + k] = state.velocity_mps[i][k];
-    }
-    mass_product(model, velocity, system, vector);
-    coefficients(basis, vector, basis.rate);
-    internal_force(model, system, vector);
-    coefficients(basis, vector, basis.residual);
+    basis.solved = 0;
+    read_state(model, state, system, basis);
 }
 
 } // namespace tissue
