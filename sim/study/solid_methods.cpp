@@ -34,7 +34,7 @@ dvec3 gravity_of(const SolidCase& work) {
 CorotatedMethod::CorotatedMethod(const SolidCase& work, const SolidBody& b)
     : body(b), dt_s(work.dt_s),
       model(tissue::make_corotated(b.corners, work.material, anchors_of(b), gravity_of(work))),
-      state(rest_state(model)), system(make_system(model)),
+      state(rest_state(model)), system(make_system(model)), chord(make_chord(model)),
       load_n(static_cast<std::size_t>(model.unknowns), 0.0), du(load_n) {}
 
 void CorotatedMethod::set_load_n(double force_n) {
@@ -44,13 +44,14 @@ void CorotatedMethod::set_load_n(double force_n) {
 }
 
 SolidEffort CorotatedMethod::step() {
-    linearize(model, state, dt_s, system);
-    for (std::size_t k = 0; k < load_n.size(); ++k)
-        system.internal_n[k] -= load_n[k];
-    const tissue::StepReport report = free_motion(model, state, system, du);
-    advance(model, du, dt_s, state);
-    return {.newton = 1,
-            .linear = 1,
+    if (!linearised || !body.punched.empty())
+        linearize(model, state, dt_s, system);
+    const tissue::StepReport report = free_motion(model, state, system, du, load_n);
+    linearised = body.punched.empty() && end_on_chord(model, load_n, du, system, chord, state).made;
+    if (!linearised)
+        advance(model, du, dt_s, state);
+    return {.newton = body.punched.empty() ? 2 : 1,
+            .linear = body.punched.empty() ? 2 : 1,
             .linear_residual = report.relative_residual,
             .converged = system.factored};
 }
@@ -80,6 +81,7 @@ double CorotatedMethod::audit(std::span<const dvec3> before_mps) const {
 
 SolidEffort CorotatedMethod::settle() {
     constexpr double kEnough = 1e-6; // near nu = 1/2 rounding keeps it from 1e-9
+    linearised = false;
     const auto report = solve_static(model, load_n, 1e-9, 100, state);
     return {.newton = report.iterations,
             .linear = report.iterations,

@@ -17,6 +17,7 @@
 #include "tissue/baseline/tled.h"
 #include "tissue/baseline/xpbd.h"
 #include "tissue/reference/reference.h"
+#include "tissue/solver/chord.h"
 #include "tissue/solver/quadratic.h"
 
 #include <cmath>
@@ -28,7 +29,8 @@ namespace sim {
 std::vector<std::uint8_t> anchors_of(const SolidBody& body);
 glm::dvec3 gravity_of(const SolidCase& work);
 
-/// Corotated tetrahedra: solver/corotated.h.
+/// Corotated tetrahedra: solver/corotated.h, and as in the trainer the factor of an earlier step
+/// for as long as it corrects well, solver/chord.h. Not where a punch moves nodes from outside.
 struct CorotatedMethod {
     static constexpr bool kStatics = true;
     const SolidBody& body;
@@ -36,6 +38,8 @@ struct CorotatedMethod {
     tissue::CorotatedModel model;
     tissue::CorotatedState state;
     tissue::CorotatedSystem system;
+    tissue::Chord chord;
+    bool linearised = false; // system.internal_n and a factor that serves are there
     std::vector<double> load_n, du;
 
     CorotatedMethod(const SolidCase& work, const SolidBody& b);
