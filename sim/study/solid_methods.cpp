@@ -44,14 +44,20 @@ void CorotatedMethod::set_load_n(double force_n) {
 }
 
 SolidEffort CorotatedMethod::step() {
-    if (!linearised || !body.punched.empty())
+    const bool punched = !body.punched.empty();
+    if (!linearised || punched)
         linearize(model, state, dt_s, system);
     const tissue::StepReport report = free_motion(model, state, system, du, load_n);
-    linearised = body.punched.empty() && end_on_chord(model, load_n, du, system, chord, state).made;
+    int iterations = 1;
+    if (!punched) {
+        const tissue::FreshEnd end = end_or_begin_again(model, load_n, du, system, chord, state);
+        iterations += end.new_tangent ? 3 : 1;
+        linearised = end.end.made;
+    }
     if (!linearised)
         advance(model, du, dt_s, state);
-    return {.newton = body.punched.empty() ? 2 : 1,
-            .linear = body.punched.empty() ? 2 : 1,
+    return {.newton = iterations,
+            .linear = iterations,
             .linear_residual = report.relative_residual,
             .converged = system.factored};
 }

@@ -3,6 +3,7 @@
 // implicit Euler solved by Newton's method to rounding, and against statics.
 #include "tests/tissue/touched_body.h"
 #include "tissue/solver/chord.h"
+#include "tissue/solver/corotated_assembly.h"
 
 #include <cmath>
 #include <doctest/doctest.h>
@@ -120,6 +121,36 @@ TEST_CASE("chord: a tangent that is too old is refused, and the state left as it
     CHECK_FALSE(end.made);
     CHECK(std::ranges::equal(p.state.position_m, before.position_m));
     CHECK(std::ranges::equal(p.state.velocity_mps, before.velocity_mps));
+}
+
+TEST_CASE(
+    "chord: without contact such a step is begun again with the tangent of now, and is better") {
+    const auto bent = [](tissue::CorotatedSystem& fresh) {
+        Pressed p(0.1);
+        for (std::size_t i = 0; i < p.state.position_m.size(); ++i)
+            p.state.position_m[i].x += 6.0 * std::pow(p.block.mesh.rest_m[i].z, 2);
+        tissue::linearize(p.block.model, p.state, kDt_s, fresh);
+        p.system.internal_n = fresh.internal_n; // forces of now, the tangent of the rest shape
+        return p;
+    };
+    tissue::CorotatedSystem fresh = tissue::make_system(Pressed(0.1).block.model);
+    Pressed old = bent(fresh), p = bent(fresh);
+    const std::vector<double> exact = solved(p);
+    std::vector<double> newton(exact.size());
+    tissue::free_motion(p.block.model, p.state, fresh, newton, p.load_n);
+    CHECK_FALSE(old.step().made);
+    tissue::free_motion(p.block.model, p.state, p.system, p.du, p.load_n);
+    const tissue::FreshEnd end =
+        tissue::end_or_begin_again(p.block.model, p.load_n, p.du, p.system, p.chord, p.state);
+    CHECK(end.end.made);
+    CHECK(end.new_tangent);
+    MESSAGE("off by " << apart(p.du, exact) / norm(exact) << ", one iteration of Newton's by "
+                      << apart(newton, exact) / norm(exact) << ", with the old tangent "
+                      << apart(old.du, exact) / norm(exact));
+    CHECK(apart(p.du, exact) < 0.25 * apart(newton, exact));
+    std::vector<double> force_n(exact.size());
+    tissue::assemble_forces(p.block.model, p.state, force_n);
+    CHECK(apart(p.system.internal_n, force_n) < 1e-9 * norm(force_n)); // for the next step
 }
 
 TEST_CASE("chord: what is not a number is refused") {

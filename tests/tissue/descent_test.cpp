@@ -185,7 +185,7 @@ TEST_CASE("a descent keeps linear momentum, and angular momentum as implicit Eul
     }
 }
 
-TEST_CASE("where nothing is inverted the end of a step is advance and linearize, bit for bit") {
+TEST_CASE("nothing inverted, little gained: a step ends by advance and linearize, bit for bit") {
     std::mt19937_64 random(7);
     tissue::Material material = elastic(10e3, 0.45);
     material.damping_stiffness_s = 3e-3;
@@ -193,18 +193,15 @@ TEST_CASE("where nothing is inverted the end of a step is advance and linearize,
     tissue::CorotatedSystem system = tissue::make_system(body.model);
     body.state =
         bodies::moved(body.model, body.state, bodies::random_unknowns(body.model, 4), 1e-3);
-    for (std::size_t k = 0; k < body.state.velocity_mps.size(); ++k) // a radian a step
-        body.state.velocity_mps[k] = glm::cross(dvec3{0, 0, 100.0}, body.state.position_m[k]) +
+    for (std::size_t k = 0; k < body.state.velocity_mps.size(); ++k) // 0.4 radians a step
+        body.state.velocity_mps[k] = glm::cross(dvec3{0, 0, 40.0}, body.state.position_m[k]) +
                                      0.1 * bodies::signed_vector(random);
-    int gains = 0; // one Newton iteration swells what spins so fast, and shall go on doing so
     tissue::CorotatedState state = body.state;
     std::vector<double> du(body.du.size());
     body.begin(0.01);
     tissue::linearize(body.model, state, 0.01, system);
     for (int i = 0; i < 20; ++i) {
-        const double before_j = body.energy_j();
         CHECK(body.step().iterations == 0);
-        gains += body.energy_j() > before_j * (1.0 + kRounding);
         CHECK_FALSE(body.state.recovering);
         tissue::free_motion(body.model, state, system, du);
         tissue::advance(body.model, du, 0.01, state);
@@ -215,7 +212,6 @@ TEST_CASE("where nothing is inverted the end of a step is advance and linearize,
         CHECK(system.matrix == body.system.matrix);
         CHECK(system.internal_n == body.system.internal_n);
     }
-    CHECK(gains > 0);
 }
 
 TEST_CASE("thrown about under a constant load, a body comes to the rest that statics finds") {

@@ -12,6 +12,10 @@ namespace {
 
 using glm::dvec3;
 
+// Of |du|: a twentieth leaves its square, 0.3 %, after the correction; a micrometre does not
+// matter; a half may as well lead away: such a correction is not made.
+constexpr double kMost = 0.05, kNothing_m = 1e-6, kLeadsAway = 0.5;
+
 // load - [M (du/dt - v)/dt + (alpha M + beta K) du/dt + f_int], K the old one. Returns the size of
 // the forces that it is the sum of.
 double find_residual(const CorotatedModel& model, std::span<const double> load_n,
@@ -38,18 +42,10 @@ double find_residual(const CorotatedModel& model, std::span<const double> load_n
     return std::sqrt(inertia2) + norm_of(chord.force_n) + norm_of(load_n);
 }
 
-} // namespace
-
-Chord make_chord(const CorotatedModel& model) {
-    const auto n = static_cast<std::size_t>(model.unknowns);
-    return {rest_state(model), std::vector<double>(n), std::vector<double>(n)};
-}
-
-ChordEnd end_on_chord(const CorotatedModel& model, std::span<const double> load_n,
-                      std::span<double> du, CorotatedSystem& system, Chord& chord,
-                      CorotatedState& state) noexcept {
-    // a twentieth leaves its square, 0.3 %, after the correction; a micrometre does not matter
-    constexpr double kMost = 0.05, kNothing_m = 1e-6;
+// Corrects, and ends the step if that was no more than a share `most`.
+ChordEnd correct(const CorotatedModel& model, std::span<const double> load_n, double most,
+                 std::span<double> du, CorotatedSystem& system, Chord& chord,
+                 CorotatedState& state) noexcept {
     ChordEnd end;
     if (!system.factored || system.inverted > 0 || state.recovering)
         return end;
@@ -64,10 +60,12 @@ ChordEnd end_on_chord(const CorotatedModel& model, std::span<const double> load_
     if (!std::isfinite(off_m))
         return end;
     end.share = moved_m > 0.0 ? off_m / moved_m : 0.0;
+    const double nothing_m = kNothing_m * std::sqrt(static_cast<double>(du.size()) / 3.0);
+    if (off_m > std::max(kLeadsAway * moved_m, nothing_m))
+        return end;
     for (std::size_t k = 0; k < du.size(); ++k)
         du[k] += correction[k];
-    const double nothing_m = kNothing_m * std::sqrt(static_cast<double>(du.size()) / 3.0);
-    end.made = sums.inverted == 0 && off_m <= std::max(kMost * moved_m, nothing_m);
+    end.made = sums.inverted == 0 && off_m <= std::max(most * moved_m, nothing_m);
     if (!end.made)
         return end;
     advance(model, du, system.dt_s, state);
@@ -75,6 +73,38 @@ ChordEnd end_on_chord(const CorotatedModel& model, std::span<const double> load_
     follow_tangent(model, correction, system);
     system.peak_von_mises_pa = sums.peak_von_mises_pa;
     return end;
+}
+
+} // namespace
+
+Chord make_chord(const CorotatedModel& model) {
+    const auto n = static_cast<std::size_t>(model.unknowns);
+    return {rest_state(model), std::vector<double>(n), std::vector<double>(n)};
+}
+
+ChordEnd end_on_chord(const CorotatedModel& model, std::span<const double> load_n,
+                      std::span<double> du, CorotatedSystem& system, Chord& chord,
+                      CorotatedState& state) noexcept {
+    return correct(model, load_n, kMost, du, system, chord, state);
+}
+
+FreshEnd end_or_begin_again(const CorotatedModel& model, std::span<const double> load_n,
+                            std::span<double> du, CorotatedSystem& system, Chord& chord,
+                            CorotatedState& state) noexcept {
+    FreshEnd out{.end = end_on_chord(model, load_n, du, system, chord, state)};
+    if (out.end.made || system.inverted > 0 || state.recovering)
+        return out;
+    linearize(model, state, system.dt_s, system);
+    out.new_tangent = true;
+    free_motion(model, state, system, du, load_n);
+    constexpr int kCorrections = 3; // a body that whips around wants more than one
+    for (int i = 1; i <= kCorrections && !out.end.made; ++i)
+        out.end =
+            correct(model, load_n, i < kCorrections ? kMost : kLeadsAway, du, system, chord, state);
+    if (out.end.made) // K times so much is not the change of forces
+        system.peak_von_mises_pa =
+            assemble_forces(model, state, system.internal_n).peak_von_mises_pa;
+    return out;
 }
 
 } // namespace tissue

@@ -149,12 +149,17 @@ SolidReport end(CorotatedSolid& s, std::span<const double> load_n, double reline
         follow_tangent(s.model, du, s.system);
         return {};
     }
-    ChordEnd corrected;
-    if (relinearise_m > 0.0 && !placed)
-        corrected = end_on_chord(s.model, load_n, du, s.system, s.chord, s.state);
-    if (corrected.made) {
+    FreshEnd corrected;
+    if (relinearise_m > 0.0 && !placed) {
+        const bool touched = largest(load_n) > 0.0;
+        if (touched) // what contact made of the step would be lost
+            corrected.end = end_on_chord(s.model, load_n, du, s.system, s.chord, s.state);
+        else
+            corrected = end_or_begin_again(s.model, load_n, du, s.system, s.chord, s.state);
+    }
+    if (corrected.end.made) {
         s.drift_m = 0.0;
-        return {.residual = corrected.residual};
+        return {.residual = corrected.end.residual, .new_tangent = corrected.new_tangent};
     }
     const StepEnd end = finish_step(s.model, load_n, du, s.system, s.descent, s.state);
     s.drift_m = 0.0;
