@@ -58,8 +58,11 @@ glm::dvec3 rest_place(const Body& body, const tissue::ContactPoint& at) noexcept
 }
 
 // How far a body may move from where the columns of its modes were solved for, while their contact
-// stays: what solves cost is a multiple of the step, and K in the space is that of every step.
-constexpr double kBasisDrift_m = 1e-3;
+// stays: what solves cost is a multiple of the step, and K in the space is that of every step. Less
+// for tets that are linear: with 5 mm a held point's answer would be off by 1 %.
+double basis_drift_m(tissue::Tier tier) noexcept {
+    return tier == tissue::Tier::quadratic ? 5e-3 : 1e-3;
+}
 
 // Columns of a factor that is still there are what solving anew would give.
 bool of_this_factor(const SoftBody& soft, const BasisPlace& place) noexcept {
@@ -78,7 +81,8 @@ double wear(const Body& body, const tissue::BasisContact& contact) noexcept {
     const double middle_m =
         kMiddle * arm_of_star_m(body, static_cast<int>(contact.centre.triangle));
     const double slid = glm::distance(rest_place(body, contact.centre), place.rest_m) / middle_m;
-    const double drifted = (soft.moved_m - place.moved_m) / kBasisDrift_m;
+    const double drifted =
+        (soft.moved_m - place.moved_m) / basis_drift_m(tissue::tier_of(soft.solid));
     return of_this_factor(soft, place) ? slid : std::max(slid, drifted);
 }
 
