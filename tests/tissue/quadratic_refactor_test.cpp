@@ -162,3 +162,17 @@ TEST_CASE("refactor: a body that is inside out keeps the factor of its rest") {
     REQUIRE(b.system.recovering);
     CHECK_FALSE(refactor(b.model, b.system));
 }
+
+TEST_CASE(
+    "refactor: how long it takes is counted: longer for more, in more steps if they are short") {
+    const auto steps = [](int cells, double dt_s) {
+        const auto mesh = reference_bodies::irregular_box({0.1, 0.08, 0.06}, cells, 1);
+        const auto model =
+            make_quadratic(mesh, bodies::elastic(20e3, 0.3), quadratic_bodies::held_at_x0(mesh));
+        return steps_to_refactor(model, make_system(model, dt_s).single, dt_s);
+    };
+    CHECK(steps(2, 0.02) == 2);
+    CHECK(steps(3, 1e-4) > steps(2, 1e-4));
+    CHECK(steps(4, 1e-4) > steps(3, 1e-4));
+    CHECK(steps(4, 1e-5) > 5 * steps(4, 1e-4));
+}

@@ -174,11 +174,12 @@ template <bool kMemory> void add_tet(const Tet& tet, const Nodes& nodes, int i) 
 
 // Three lines of a node at a time: neighbours in order, each times what they have in common.
 template <typename T, typename Line>
-void product(const QuadraticModel& model, const T* S, const Line* x, Line* y) noexcept {
+void product(const QuadraticModel& model, const T* S, const Line* x, Line* y,
+             int columns) noexcept {
     constexpr hn::CappedTag<T, kLanes> kLine;
     const int step = static_cast<int>(hn::Lanes(kLine));
     for (std::size_t i = 0; i + 1 < model.mass_start.size(); ++i) {
-        for (int c = 0; c < kLanes; c += step) {
+        for (int c = 0; c < columns; c += step) {
             auto s0 = hn::Zero(kLine), s1 = s0, s2 = s0;
             for (std::int32_t k = model.mass_start[i]; k < model.mass_start[i + 1]; ++k) {
                 const auto both = hn::Set(kLine, S[k]);
@@ -197,7 +198,7 @@ void product(const QuadraticModel& model, const T* S, const Line* x, Line* y) no
 } // namespace
 
 void tangent_columns(const QuadraticModel& model, const QuadraticTangents& tangents, float factor,
-                     const ColumnLine* p, ColumnLine* q) {
+                     const ColumnLine* p, ColumnLine* q, int columns) {
     const bool memory = !tangents.shear.empty();
     const int step = static_cast<int>(hn::Lanes(kTag));
     for (std::size_t e = 0; e < model.mesh.tets.size(); ++e) {
@@ -210,7 +211,7 @@ void tangent_columns(const QuadraticModel& model, const QuadraticTangents& tange
             nodes.from[a] = p[at].lane.data();
             nodes.to[a] = q[at].lane.data();
         }
-        for (int i = 0; i < kLanes; i += step) {
+        for (int i = 0; i < columns; i += step) {
             if (memory)
                 add_tet<true>(tet, nodes, i);
             else
@@ -220,12 +221,12 @@ void tangent_columns(const QuadraticModel& model, const QuadraticTangents& tange
 }
 
 void scalar_columns_single(const QuadraticModel& model, const float* S, const ColumnLine* x,
-                           ColumnLine* y) {
-    product(model, S, x, y);
+                           ColumnLine* y, int columns) {
+    product(model, S, x, y, columns);
 }
 void scalar_columns_double(const QuadraticModel& model, const double* S, const DoubleLine* x,
                            DoubleLine* y) {
-    product(model, S, x, y);
+    product(model, S, x, y, kLanes);
 }
 
 } // namespace tissue::HWY_NAMESPACE
@@ -239,14 +240,14 @@ HWY_EXPORT(scalar_columns_single);
 HWY_EXPORT(scalar_columns_double);
 
 void add_tangent_product(const QuadraticModel& model, const QuadraticTangents& tangents,
-                         float factor, std::span<const ColumnLine> p,
-                         std::span<ColumnLine> q) noexcept {
-    HWY_DYNAMIC_DISPATCH(tangent_columns)(model, tangents, factor, p.data(), q.data());
+                         float factor, std::span<const ColumnLine> p, std::span<ColumnLine> q,
+                         int columns) noexcept {
+    HWY_DYNAMIC_DISPATCH(tangent_columns)(model, tangents, factor, p.data(), q.data(), columns);
 }
 
 void scalar_product(const QuadraticModel& model, std::span<const float> S,
-                    std::span<const ColumnLine> p, std::span<ColumnLine> q) noexcept {
-    HWY_DYNAMIC_DISPATCH(scalar_columns_single)(model, S.data(), p.data(), q.data());
+                    std::span<const ColumnLine> p, std::span<ColumnLine> q, int columns) noexcept {
+    HWY_DYNAMIC_DISPATCH(scalar_columns_single)(model, S.data(), p.data(), q.data(), columns);
 }
 
 void scalar_product(const QuadraticModel& model, std::span<const double> S,

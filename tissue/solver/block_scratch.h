@@ -19,7 +19,8 @@ struct BlockScratch {
     std::vector<DoubleLine> double_x, double_y;
     std::vector<std::int32_t> order_of_unknown; // its place there
     KnownModes known;
-    std::vector<float> bed_npm; // as QuadraticModel's
+    std::vector<float> bed_npm;         // as QuadraticModel's
+    int columns = SingleFactor::kLanes; // of this group that are in use, the first
 };
 
 } // namespace tissue

@@ -28,13 +28,13 @@ int first_line(int group) noexcept {
 // own <- B own, below -= C own. Tiles from the last to the first: what a tile reads of `own` is not
 // overwritten yet, since B is lower triangular.
 void down(const Block& block, const ColumnLine* value, const int* row, ColumnLine* own,
-          ColumnLine* all) noexcept {
+          ColumnLine* all, int columns) noexcept {
     const int step = static_cast<int>(hn::Lanes(kTag)), rows = block.columns + block.below;
     const int groups = (block.columns + kColumns - 1) / kColumns;
     for (int first = (rows - 1) / kTile * kTile; first >= 0; first -= kTile) {
         const int line = first / kLanes;
         const int reach = std::min(groups, (first + kTile) / kColumns);
-        for (int k = 0; k < kLanes; k += step) {
+        for (int k = 0; k < columns; k += step) {
             auto s0 = hn::Zero(kTag), s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0;
             const ColumnLine* from = value;
             for (int g = 0; g < reach; ++g) {
@@ -71,7 +71,7 @@ void down(const Block& block, const ColumnLine* value, const int* row, ColumnLin
 // own <- B^T own - C^T below, kColumns at a time from the first: the rows that a column reads of
 // `own` are its own and later ones.
 void up(const Block& block, const ColumnLine* value, const int* row, ColumnLine* own,
-        const ColumnLine* all) noexcept {
+        const ColumnLine* all, int columns) noexcept {
     const int step = static_cast<int>(hn::Lanes(kTag)), rows = block.columns + block.below;
     const int groups = (block.columns + kColumns - 1) / kColumns;
     for (int g = 0; g < groups; ++g) {
@@ -80,7 +80,7 @@ void up(const Block& block, const ColumnLine* value, const int* row, ColumnLine*
         const auto at = [&](int r) {
             return v + kColumns * ((r - begin) / kLanes * kLanes) + (r - begin) % kLanes;
         };
-        for (int k = 0; k < kLanes; k += step) {
+        for (int k = 0; k < columns; k += step) {
             auto s0 = hn::Zero(kTag), s1 = s0, s2 = s0, s3 = s0, t0 = s0, t1 = s0, t2 = s0, t3 = s0;
             int r = kColumns * g;
             for (; r < block.columns; ++r) {
@@ -125,14 +125,14 @@ void up(const Block& block, const ColumnLine* value, const int* row, ColumnLine*
 
 } // namespace
 
-void solve_columns_of_lines(const SingleFactor& factor, ColumnLine* b) {
+void solve_columns_of_lines(const SingleFactor& factor, ColumnLine* b, int columns) {
     for (const Block& block : factor.block)
         down(block, &factor.value[block.value_start], factor.row.data() + block.row_start,
-             b + block.first, b);
+             b + block.first, b, columns);
     for (std::size_t s = factor.block.size(); s-- > 0;) {
         const Block& block = factor.block[s];
         up(block, &factor.value[block.value_start], factor.row.data() + block.row_start,
-           b + block.first, b);
+           b + block.first, b, columns);
     }
 }
 
@@ -144,8 +144,8 @@ namespace tissue {
 
 HWY_EXPORT(solve_columns_of_lines);
 
-void solve_block(const SingleFactor& factor, std::span<ColumnLine> b) noexcept {
-    HWY_DYNAMIC_DISPATCH(solve_columns_of_lines)(factor, b.data());
+void solve_block(const SingleFactor& factor, std::span<ColumnLine> b, int columns) noexcept {
+    HWY_DYNAMIC_DISPATCH(solve_columns_of_lines)(factor, b.data(), columns);
 }
 
 } // namespace tissue

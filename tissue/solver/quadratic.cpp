@@ -275,8 +275,8 @@ void linearize(const QuadraticModel& model, const QuadraticState& state, Quadrat
         return s.min_det_f >= kFlat * start.min_det_f &&
                s.potential_j - s.energy_j + s.shape_j <= start.shape_j;
     };
-    look_ahead(model, state, 1.0, s);
-    if (!better())
+    look_ahead(model, state, state.gains_on ? 1.0 : 0.0, s);
+    if (state.gains_on && !better())
         look_ahead(model, state, 0.0, s);
     if (!better()) {
         s.moved_m = s.start_m;
@@ -345,6 +345,7 @@ QuadraticReport free_motion(const QuadraticModel& model, const QuadraticOptions&
 
 void advance(const QuadraticModel& model, const QuadraticSystem& system, std::span<const double> du,
              QuadraticState& state) noexcept {
+    double went_on = 0.0;
     for (std::size_t i = 0; i < model.dof.size(); ++i) {
         const std::int32_t d = model.dof[i];
         if (d < 0) {
@@ -353,9 +354,12 @@ void advance(const QuadraticModel& model, const QuadraticSystem& system, std::sp
         }
         const dvec3 step{du[d], du[d + 1], du[d + 2]};
         state.position_m[i] += step;
-        state.gain_mps[i] = step / system.dt_s - state.velocity_mps[i];
+        const dvec3 gain = step / system.dt_s - state.velocity_mps[i];
+        went_on += glm::dot(gain, state.gain_mps[i]);
+        state.gain_mps[i] = gain;
         state.velocity_mps[i] = step / system.dt_s;
     }
+    state.gains_on = went_on >= 0.0;
     end_memory(model, system, state);
 }
 

@@ -124,6 +124,7 @@ struct QuadraticState {
     std::vector<glm::dvec3> gain_mps; // of velocity in the last step: the next one looks there
     // of each group A of each term, then B^-1 at the end of the last step; empty without a memory
     std::vector<QuadraticSymmetric> memory{};
+    bool gains_on = true; // the last gain did not turn against the one before
 };
 
 struct QuadraticOptions {

@@ -66,15 +66,16 @@ void write(const QuadraticModel& model, const std::vector<Line>& lines, const Gr
 void precondition(const QuadraticModel& model, QuadraticSystem& s) noexcept {
     const NodeOrder nodes{model.dof, s.block.order_of_unknown, s.warp};
     turn_into_order(nodes, s.block.r, s.block.ordered);
-    solve_block(s.single, s.block.ordered);
+    solve_block(s.single, s.block.ordered, s.block.columns);
     turn_back(nodes, s.block.ordered, s.block.z);
 }
 
 // q = A p
 void multiply(const QuadraticModel& model, QuadraticSystem& s) noexcept {
     const double stiffness = 1.0 + model.material.damping_stiffness_s / s.dt_s;
-    scalar_product(model, s.scalar_npm, s.block.p, s.block.q);
-    add_tangent_product(model, s.tangent, static_cast<float>(stiffness), s.block.p, s.block.q);
+    scalar_product(model, s.scalar_npm, s.block.p, s.block.q, s.block.columns);
+    add_tangent_product(model, s.tangent, static_cast<float>(stiffness), s.block.p, s.block.q,
+                        s.block.columns);
     for (const std::int32_t at : model.fixed) // places; three lines a node
         std::fill_n(&s.block.q[at / 4 * 3], 3, ColumnLine{});
 }
@@ -149,6 +150,7 @@ void solve_group(const QuadraticModel& model, const QuadraticOptions& options,
                  std::span<double> block, const Group& group, std::span<double> residual,
                  std::span<const double> first, QuadraticSystem& s,
                  ColumnsReport& report) noexcept {
+    s.block.columns = group.count;
     Gradients done;
     for (const float share : {1.0f, 0.5f, 0.0f}) { // as solve_nodes()
         if (share < 1.0f)
@@ -233,6 +235,7 @@ void precondition_columns(const QuadraticModel& model, QuadraticSystem& system,
         return;
     }
     for_groups(model, columns, [&](const Group& group) {
+        system.block.columns = group.count;
         read(model, block, group, system.block.r);
         precondition(model, system);
         write(model, system.block.z, group, block);
@@ -253,8 +256,8 @@ void stiffness_products(const QuadraticModel& model, std::span<const double> x, 
         if (model.bed_npm.empty())
             std::fill(s.block.q.begin(), s.block.q.end(), ColumnLine{});
         else
-            scalar_product(model, s.block.bed_npm, s.block.p, s.block.q);
-        add_tangent_product(model, s.tangent, 1.0f, s.block.p, s.block.q);
+            scalar_product(model, s.block.bed_npm, s.block.p, s.block.q, group.count);
+        add_tangent_product(model, s.tangent, 1.0f, s.block.p, s.block.q, group.count);
         write(model, s.block.q, group, y);
     });
 }

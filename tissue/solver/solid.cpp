@@ -46,10 +46,12 @@ QuadraticSolid make_quadratic_tets(const SolidMesh& mesh, const Material& materi
     QuadraticOptions options;
     options.loosest_linear = 0.1;
     auto refactoring = std::make_unique<Refactoring>(make_refactoring(model));
+    const int steps = steps_to_refactor(model, system.single, dt_s);
     return {.model = std::move(model),
             .state = std::move(state),
             .system = std::move(system),
             .options = options,
+            .factor_steps = steps,
             .refactoring = std::move(refactoring)};
 }
 
@@ -175,11 +177,11 @@ constexpr double kOld = 5.0;
 // A factor of where the body is, once solves take long with the one of before: begun when they do,
 // taken so many steps later. Both are counted, never timed, so that runs repeat.
 void renew_factor(QuadraticSolid& s) noexcept {
-    constexpr int kManyIterations = 4, kTakeAfter = 10;
+    constexpr int kManyIterations = 4;
     ++s.since_factor;
-    if (s.since_factor == kTakeAfter)
+    if (s.since_factor == s.factor_steps)
         take_refactoring(*s.refactoring, s.system);
-    else if (s.since_factor > kTakeAfter && s.most_iterations > kManyIterations &&
+    else if (s.since_factor > s.factor_steps && s.most_iterations > kManyIterations &&
              begin_refactoring(s.model, s.system, *s.refactoring))
         s.since_factor = 0;
     s.most_iterations = 0;

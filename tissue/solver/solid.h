@@ -51,6 +51,7 @@ struct QuadraticSolid {
     QuadraticSystem system;
     QuadraticOptions options;
     int most_iterations = 0; // of the linear solves of this step
+    int factor_steps = 2;    // from the begin of a new factor to its use
     int since_factor = 0;    // steps since the preconditioner began to be factored anew
     std::unique_ptr<Refactoring> refactoring;
     bool begun = false;   // linearised for the step that is being made
