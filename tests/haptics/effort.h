@@ -5,7 +5,7 @@
 
 namespace effort {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef TROCAR_SANITIZED
 inline constexpr int kShare = 10;
 #else
 inline constexpr int kShare = 1;

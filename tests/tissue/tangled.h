@@ -9,7 +9,7 @@ namespace tangled {
 
 using glm::dvec3;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef TROCAR_SANITIZED
 inline constexpr int kCases = 1; // ten times as slow, and looking for other faults than rare ones
 #else
 inline constexpr int kCases = 10;
