@@ -1,7 +1,7 @@
 // sim/session/session.h
 // All parts of one attempt, put together once and run in one of three ways: lockstep (counted
-// time, as fast as the machine can), real time (threads and deadlines), replay (a recorded schedule).
-// All three call the same haptic_tick and tissue_step.
+// time, as fast as the machine can), real time (threads and deadlines), replay (a recorded
+// schedule). All three call the same haptic_tick and tissue_step.
 #pragma once
 
 #include "sim/loop/stopwatch.h"
@@ -86,8 +86,8 @@ tasks::StepTrace run_step(Session& session, const ToolsNow& tools, TissueAnswer&
 /// Fills everything of session.report that follows from counters.
 void fill_report(Session& session, std::int64_t ticks, bool realtime);
 
-/// Runs to completion or the time limit on this thread, FEM steps on one beside it; bits are those of
-/// one. `should_stop` is asked once a simulated second. Throws if there is no thread to be had.
+/// Runs to completion or the time limit on this thread, FEM steps on one beside it; bits are those
+/// of one. `should_stop` is asked once a simulated second. Throws if there is no thread to be had.
 Attempt::Outcome run_lockstep(Session& session, tasks::Logbook* logbook, std::int64_t attempt_id,
                               bool (*should_stop)() = nullptr);
 
