@@ -2,9 +2,11 @@
 #include "tissue/solver/sparse_factor.h"
 #include "tissue/solver/sparse_products.h"
 
+#include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
 #include <random>
+#include <utility>
 
 namespace {
 
@@ -119,6 +121,41 @@ TEST_CASE("solutions leave a residual below 1e-10, for one and for many right-ha
             }
         }
         CHECK(std::sqrt(error / size) < 1e-10);
+    }
+}
+
+TEST_CASE("loads of few unknowns are solved for as those of all, alone and beside others") {
+    constexpr int kColumns = 9;
+    for (const auto& [m, n] : {std::pair{random_dominant(300, 4, 5), 300}, {chain(200), 200}}) {
+        tissue::SparseFactor factor(m.pattern);
+        REQUIRE(factor.factor(m.values));
+        std::mt19937 random(8);
+        std::vector<double> few(static_cast<std::size_t>(kColumns * n), 0.0);
+        for (int c = 0; c + 1 < kColumns; ++c) { // the last is of no load at all
+            for (int k = 0; k <= c % 3; ++k)
+                few[c * n + static_cast<int>(random() % static_cast<unsigned>(n))] += 1.0 + k;
+        }
+        const std::vector<double> full = random_vector(static_cast<std::size_t>(n), 9);
+        std::vector<double> x = few, of_full = full, product(n);
+        factor.solve(x, kColumns);
+        factor.solve(of_full, 1);
+        for (int c = 0; c < kColumns; ++c) {
+            const std::span column = std::span(x).subspan(c * n, n);
+            tissue::multiply(m.pattern, m.values, column, product);
+            double left = 0.0, work = 0.0, other = 0.0; // b^T A^-1 f, both ways
+            for (int i = 0; i < n; ++i) {
+                left = std::max(left, std::abs(product[i] - few[c * n + i]));
+                work += full[i] * column[i];
+                other += few[c * n + i] * of_full[i];
+            }
+            CHECK(left < 1e-10);
+            CHECK(work == doctest::Approx(other).epsilon(1e-9));
+            std::vector<double> alone(few.begin() + c * n, few.begin() + (c + 1) * n);
+            factor.solve(alone, 1);
+            for (int i = 0; i < n; ++i)
+                CHECK(alone[i] == doctest::Approx(column[i]).scale(1.0).epsilon(1e-12));
+        }
+        CHECK(std::all_of(x.end() - n, x.end(), [](double v) { return v == 0.0; }));
     }
 }
 

@@ -3,6 +3,8 @@
 // bake; an object belongs to one thread at a time.
 #include "tissue/solver/sparse_factor.h"
 
+#include "tissue/solver/supernode_solve.h"
+
 #include <algorithm>
 #include <cblas.h>
 #include <cholmod.h>
@@ -13,6 +15,8 @@
 
 namespace tissue {
 namespace {
+
+constexpr std::size_t kGroup = 12; // right-hand sides that are solved for at a time
 
 // CHOLMOD asks OpenMP for four threads by name; at nesting depth 0 every region runs on the
 // caller alone. Per thread, hence before every use.
@@ -46,6 +50,7 @@ struct SparseFactor::Impl {
     std::vector<double> value;
     cholmod_sparse matrix{};
     cholmod_factor* factor = nullptr;
+    std::vector<double> ordered, below; // right-hand sides in that order; scratch of a solve
     cholmod_dense *right = nullptr, *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
     bool usable = false;
 
@@ -96,9 +101,8 @@ struct SparseFactor::Impl {
         }
     }
 
-    // Solves for `columns` right-hand sides, whole (CHOLMOD_A) or forward only (CHOLMOD_L); the
-    // answer, in elimination order, stays in `solution`.
-    const double* solve(int system, std::span<const double> b, std::size_t columns) noexcept {
+    // L X = B; the answer, in elimination order, stays in `solution`.
+    const double* solve_half(std::span<const double> b, std::size_t columns) noexcept {
         stay_on_this_thread();
         const std::size_t n = order.size();
         right = cholmod_ensure_dense(&right, n, columns, n, CHOLMOD_REAL, &common);
@@ -109,11 +113,42 @@ struct SparseFactor::Impl {
             for (std::size_t k = 0; k < n; ++k)
                 to[c * n + k] = b[c * n + order[k]];
         }
-        if (cholmod_solve2(system, factor, right, nullptr, &solution, nullptr, &work_y, &work_e,
+        if (cholmod_solve2(CHOLMOD_L, factor, right, nullptr, &solution, nullptr, &work_y, &work_e,
                            &common) == 0) {
             return nullptr;
         }
         return static_cast<const double*>(solution->x);
+    }
+
+    SupernodeView blocks() const noexcept {
+        return {static_cast<int>(factor->nsuper),    static_cast<const int*>(factor->super),
+                static_cast<const int*>(factor->pi), static_cast<const int*>(factor->px),
+                static_cast<const int*>(factor->s),  static_cast<const double*>(factor->x)};
+    }
+
+    void make_room() {
+        const SupernodeView f = blocks();
+        int most_below = 0;
+        for (int s = 0; s < f.blocks; ++s)
+            most_below = std::max(most_below, f.row_start[s + 1] - f.row_start[s] -
+                                                  (f.first[s + 1] - f.first[s]));
+        ordered.resize(kGroup * order.size());
+        below.resize(kGroup * static_cast<std::size_t>(most_below));
+    }
+
+    // A X = B in place for at most kGroup columns.
+    void solve_group(std::span<double> b, std::size_t columns) noexcept {
+        const std::size_t n = order.size();
+        for (std::size_t c = 0; c < columns; ++c) {
+            for (std::size_t k = 0; k < n; ++k)
+                ordered[c * n + k] = b[c * n + order[k]];
+        }
+        solve_supernodes(blocks(), std::span(ordered).first(n * columns), static_cast<int>(columns),
+                         below);
+        for (std::size_t c = 0; c < columns; ++c) {
+            for (std::size_t k = 0; k < n; ++k)
+                b[c * n + order[k]] = ordered[c * n + k];
+        }
     }
 
     void permute(const SparsePattern& pattern) {
@@ -156,6 +191,7 @@ SparseFactor::SparseFactor(const SparsePattern& pattern) : impl_(std::make_uniqu
     impl_->permute(pattern);
     impl_->describe(impl_->column_start, impl_->row);
     impl_->analyze(CHOLMOD_NATURAL);
+    impl_->make_room();
     impl_->matrix.xtype = CHOLMOD_REAL;
     impl_->matrix.x = impl_->value.data();
 }
@@ -182,13 +218,11 @@ bool SparseFactor::solve(std::span<double> b, int columns) noexcept {
     Impl& s = *impl_;
     if (!s.usable || columns < 1)
         return false;
-    const std::size_t n = s.order.size();
-    const double* x = s.solve(CHOLMOD_A, b, static_cast<std::size_t>(columns));
-    if (x == nullptr)
-        return false;
-    for (int c = 0; c < columns; ++c) {
-        for (std::size_t k = 0; k < n; ++k)
-            b[c * n + s.order[k]] = x[c * n + k];
+    stay_on_this_thread();
+    const std::size_t n = s.order.size(), all = static_cast<std::size_t>(columns);
+    for (std::size_t c = 0; c < all; c += kGroup) {
+        const std::size_t count = std::min(kGroup, all - c);
+        s.solve_group(b.subspan(c * n, count * n), count);
     }
     return true;
 }
@@ -198,7 +232,7 @@ bool SparseFactor::compliances(std::span<const double> b, std::span<double> out)
     if (!s.usable || out.empty())
         return false;
     const std::size_t n = s.order.size();
-    const double* x = s.solve(CHOLMOD_L, b, out.size());
+    const double* x = s.solve_half(b, out.size());
     if (x == nullptr)
         return false;
     for (std::size_t c = 0; c < out.size(); ++c)

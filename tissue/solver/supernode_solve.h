@@ -1,0 +1,25 @@
+// tissue/solver/supernode_solve.h
+// L L^T X = B for a factor of dense blocks and many right-hand sides. What a tool loads are a few
+// nodes: on the way down, blocks above them in the elimination tree have nothing to pass on and are
+// left out (Gilbert & Peierls 1988, by blocks). Tissue loop; no allocation.
+#pragma once
+
+#include <span>
+
+namespace tissue {
+
+/// As Supernodes, not owned: block s has columns [first[s], first[s + 1]), rows
+/// row[row_start[s]..row_start[s + 1]), first its own, and numbers from value[value_start[s]],
+/// column by column.
+struct SupernodeView {
+    int blocks = 0;
+    const int *first = nullptr, *row_start = nullptr, *value_start = nullptr, *row = nullptr;
+    const double* value = nullptr;
+};
+
+/// In elimination order, in place, `columns` columns of n one after the other. `scratch`: rows
+/// below a block, the most of any, for each column.
+void solve_supernodes(const SupernodeView& factor, std::span<double> x, int columns,
+                      std::span<double> scratch) noexcept;
+
+} // namespace tissue
