@@ -22,7 +22,7 @@ struct OrganArguments {
     std::string out;
     bool reference = false;
     std::vector<double> toward{0.0, 0.0, 0.0};
-    double hold_length_mm = 10.0, tip_mm = 1.5, friction = 0.1;
+    double hold_share = 0.3, hold_length_mm = 10.0, tip_mm = 1.5, friction = 0.1;
     std::string tier = "corotated", record;
     OrganReferenceOptions beside;
 };
@@ -37,6 +37,10 @@ std::vector<double> reference_depths_m(const std::vector<double>& given_mm, bool
     return depth_m;
 }
 
+HoldSide hold_of(const OrganArguments& a) {
+    return {{a.toward[0], a.toward[1], a.toward[2]}, a.hold_share, 1e-3 * a.hold_length_mm};
+}
+
 void beside_reference(OrganArguments& a, bool depths_given) {
     OrganReferenceOptions& o = a.beside;
     o.organ = a.organ.organ;
@@ -44,8 +48,7 @@ void beside_reference(OrganArguments& a, bool depths_given) {
     o.material.young_pa = 1e3 * a.young_kpa;
     o.seed = a.organ.seed;
     o.places = a.organ.points;
-    o.hold.toward = {a.toward[0], a.toward[1], a.toward[2]};
-    o.hold.length_m = 1e-3 * a.hold_length_mm;
+    o.hold = hold_of(a);
     o.press.radius_m = 1e-3 * a.tip_mm;
     o.press.friction = a.friction;
     o.press.depth_m = reference_depths_m(a.organ.depth_mm, depths_given);
@@ -75,6 +78,7 @@ void beside_reference(OrganArguments& a, bool depths_given) {
 void organ(OrganArguments& a) {
     OrganStudyOptions& o = a.organ;
     o.material.young_pa = 1e3 * a.young_kpa;
+    o.hold = hold_of(a);
     o.slide_from_mm = {a.from_mm[0], a.from_mm[1], a.from_mm[2]};
     o.slide_heading = {a.heading[0], a.heading[1], a.heading[2]};
     const OrganStudy study = run_organ_study(o);
@@ -138,7 +142,7 @@ void add_study_organ(CLI::App& study) {
                   "What the reference has pressed: goes on where it was; else in --out");
     c->add_option("--hold-toward", a->toward, "Hold the organ by a bed on this side instead")
         ->expected(3);
-    c->add_option("--hold-share", a->beside.hold.share, "Of its extent that way");
+    c->add_option("--hold-share", a->hold_share, "Of its extent that way");
     c->add_option("--hold-length", a->hold_length_mm, "Over which motion dies out in it, mm");
     c->callback([a, c] {
         if (!a->reference) {

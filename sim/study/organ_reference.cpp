@@ -1,7 +1,6 @@
 // The organ's places pressed by both; see organ_reference.h.
 #include "sim/study/organ_reference.h"
 
-#include "sim/session/rehold.h"
 #include "sim/study/indent.h"
 #include "sim/study/organ_study.h"
 #include "sim/study/reference_record.h"
@@ -18,29 +17,8 @@ namespace sim {
 namespace {
 
 using glm::dvec3;
-using OrganPointer = std::shared_ptr<const tissue::BakedOrgan>;
 
 constexpr Gates kGates;
-
-OrganPointer held_organ(OrganPointer organ, const HoldSide& hold) {
-    if (hold.toward == dvec3{0.0})
-        return organ;
-    if (!(hold.share > 0.0 && hold.share <= 1.0)) {
-        throw std::invalid_argument(
-            fmt::format("hold share = {}: must be above 0 and at most 1", hold.share));
-    }
-    const dvec3 toward = glm::normalize(hold.toward);
-    double low = std::numeric_limits<double>::max(), high = -low;
-    for (const dvec3& x : organ->mesh.rest_m) {
-        low = std::min(low, glm::dot(x, toward));
-        high = std::max(high, glm::dot(x, toward));
-    }
-    const double from = high - hold.share * (high - low);
-    return std::make_shared<const tissue::BakedOrgan>(
-        held_by(*organ, tissue::make_bed(
-                            organ->mesh, [&](const dvec3& x) { return glm::dot(x, toward) > from; },
-                            hold.length_m)));
-}
 
 double percent(double value, double truth) {
     return truth == 0.0 ? 0.0 : 100.0 * (value - truth) / std::abs(truth);

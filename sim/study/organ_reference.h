@@ -7,6 +7,7 @@
 // Where the reference finds no equilibrium there is a gap, counted apart from what is inside.
 #pragma once
 
+#include "sim/study/hold_side.h"
 #include "sim/study/reference_press.h"
 #include "sim/study/three_tips.h"
 #include "sim/study/trainer_press.h"
@@ -14,14 +15,6 @@
 #include <filesystem>
 
 namespace sim {
-
-/// Springs for an organ that was baked loose, or to replace its own: a bed over the share of its
-/// extent that lies farthest along `toward`.
-struct HoldSide {
-    glm::dvec3 toward{0.0}; // 0: as baked
-    double share = 0.3;
-    double length_m = 0.01;
-};
 
 struct OrganReferenceOptions {
     std::string organ; // name in the organ folder, or file

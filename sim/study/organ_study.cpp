@@ -77,7 +77,7 @@ std::shared_ptr<const tissue::BakedOrgan> load_organ(const std::string& name) {
 
 OrganStudy run_organ_study(const OrganStudyOptions& o) {
     OrganStudy study;
-    const auto organ = load_organ(o.organ);
+    const auto organ = held_organ(load_organ(o.organ), o.hold);
     Indenter indenter(organ, o.material, organ->tip_radius_max_m);
     study.nodes = static_cast<int>(organ->mesh.rest_m.size() + organ->line.node_m.size());
     study.tets = static_cast<int>(organ->mesh.tets.size());
@@ -89,7 +89,7 @@ OrganStudy run_organ_study(const OrganStudyOptions& o) {
     rate_slide(study);
     if (o.other.empty())
         return study;
-    const auto other = load_organ(o.other);
+    const auto other = held_organ(load_organ(o.other), o.hold);
     Indenter second(other, o.material, other->tip_radius_max_m);
     study.other_nodes = static_cast<int>(other->mesh.rest_m.size() + other->line.node_m.size());
     study.other_tets = static_cast<int>(other->mesh.tets.size());

@@ -3,6 +3,7 @@
 // of the same organ, how far the two agree place by place.
 #pragma once
 
+#include "sim/study/hold_side.h"
 #include "sim/study/indent.h"
 
 #include <filesystem>
@@ -12,6 +13,7 @@ namespace sim {
 struct OrganStudyOptions {
     std::string organ, other; // names in the organ folder, or files; other: may be ""
     tissue::Material material;
+    HoldSide hold; // of both
     int points = 50;
     std::uint64_t seed = 1;
     std::vector<double> depth_mm{1.0, 2.0, 4.0, 8.0};
