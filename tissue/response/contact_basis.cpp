@@ -72,8 +72,22 @@ void gram(const double* q, std::size_t n, int columns, SmallMatrix& out) noexcep
                 static_cast<int>(n), 0.0, out.data(), kSmall);
 }
 
-// Orthonormal columns of w.y go to `q`, those of w.z that belong to them to w.y. Returns how many.
-int orthonormalise(const Work& w, std::span<const int> blocks, int columns, double* q) noexcept {
+// a <- a L^-T, and the same of L^-1 a, of small ones.
+void divide_right(const SmallMatrix& lower, int columns, SmallMatrix& a) noexcept {
+    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, columns, columns,
+                1.0, lower.data(), kSmall, a.data(), kSmall);
+}
+void divide_left(const SmallMatrix& lower, CBLAS_TRANSPOSE turned, int columns,
+                 SmallMatrix& a) noexcept {
+    cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, turned, CblasNonUnit, columns, columns, 1.0,
+                lower.data(), kSmall, a.data(), kSmall);
+}
+
+// Columns of w.y that are orthonormal but for roundoff times their condition go to `q`; what
+// makes them wholly so is `rest`, q rest^-T. Of the loads w.z nothing long is made: `projected` is
+// rest^-1 q^T (A q) rest^-T, A as it is in y. Returns how many columns there are.
+int orthonormalise(const Work& w, std::span<const int> blocks, int columns, double* q,
+                   SmallMatrix& rest, SmallMatrix& projected) noexcept {
     const std::size_t n = w.y.n;
     SmallMatrix lower;
     std::array<int, kSmall> kept;
@@ -84,13 +98,13 @@ int orthonormalise(const Work& w, std::span<const int> blocks, int columns, doub
     for (int j = 0; j < rank; ++j)
         std::copy_n(w.z[kept[j]], n, w.y[j]);
     divide(lower, q, n, rank);
-    divide(lower, w.y[0], n, rank);
-
-    gram(q, n, rank, lower);
-    if (!cholesky(lower, rank))
+    gram(q, n, rank, rest);
+    if (!cholesky(rest, rank))
         return 0;
-    divide(lower, q, n, rank);
-    divide(lower, w.y[0], n, rank);
+    inner_products(q, w.y[0], n, rank, projected);
+    divide_right(lower, rank, projected);
+    divide_right(rest, rank, projected);
+    divide_left(rest, CblasNoTrans, rank, projected);
     return rank;
 }
 
@@ -277,16 +291,14 @@ void compute_contact_basis(const CorotatedModel& model, const ContactSurface& su
         }
     }
 
-    // orthonormal Q in `shape`, M^(-1/2) A M^(-1/2) Q in w.y
-    double* q = basis.shape.data();
-    const int rank = orthonormalise(w, blocks, columns, q);
-
     // eigenvectors of the projected A are those of K
-    SmallMatrix turn;
+    double* q = basis.shape.data();
+    SmallMatrix rest, turn;
+    const int rank = orthonormalise(w, blocks, columns, q, rest, turn);
     std::array<double, kSmall> value{};
-    inner_products(q, w.y[0], n, rank, turn);
     if (positive_eigen(turn, rank, value) == 0)
         return;
+    divide_left(rest, CblasTrans, rank, turn);
     const double rate = 1.0 / system.dt_s;
     const double of_m = rate * rate + model.material.damping_mass_1ps * rate;
     const double of_k = 1.0 + model.material.damping_stiffness_s * rate;

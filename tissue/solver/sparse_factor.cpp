@@ -50,6 +50,7 @@ struct SparseFactor::Impl {
     std::vector<double> value;
     cholmod_sparse matrix{};
     cholmod_factor* factor = nullptr;
+    std::vector<double> inverse;        // of the factor's tiles
     std::vector<double> ordered, below; // right-hand sides in that order; scratch of a solve
     cholmod_dense *right = nullptr, *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
     bool usable = false;
@@ -121,17 +122,22 @@ struct SparseFactor::Impl {
     }
 
     SupernodeView blocks() const noexcept {
-        return {static_cast<int>(factor->nsuper),    static_cast<const int*>(factor->super),
-                static_cast<const int*>(factor->pi), static_cast<const int*>(factor->px),
-                static_cast<const int*>(factor->s),  static_cast<const double*>(factor->x)};
+        return {static_cast<int>(factor->nsuper),
+                static_cast<const int*>(factor->super),
+                static_cast<const int*>(factor->pi),
+                static_cast<const int*>(factor->px),
+                static_cast<const int*>(factor->s),
+                static_cast<const double*>(factor->x),
+                inverse.data()};
     }
 
     void make_room() {
         const SupernodeView f = blocks();
-        int most_below = 0;
+        int most_below = kTile;
         for (int s = 0; s < f.blocks; ++s)
             most_below = std::max(most_below, f.row_start[s + 1] - f.row_start[s] -
                                                   (f.first[s + 1] - f.first[s]));
+        inverse.resize(kTile * order.size());
         ordered.resize(kGroup * order.size());
         below.resize(kGroup * static_cast<std::size_t>(most_below));
     }
@@ -211,6 +217,8 @@ bool SparseFactor::factor(std::span<const double> values) noexcept {
     s.common.status = CHOLMOD_OK;
     const int done = cholmod_factorize(&s.matrix, s.factor, &s.common);
     s.usable = done != 0 && s.common.status == CHOLMOD_OK && s.factor->minor == s.factor->n;
+    if (s.usable)
+        invert_tiles(s.blocks(), s.inverse);
     return s.usable;
 }
 
