@@ -22,7 +22,7 @@ OrganPointer held_organ(OrganPointer organ, const HoldSide& hold) {
     }
     const dvec3 toward = glm::normalize(hold.toward);
     double low = std::numeric_limits<double>::max(), high = -low;
-    for (const dvec3& x : organ->mesh.rest_m) {
+    for (const dvec3& x : organ->surface.rest_m) { // the same for all meshes of an organ
         low = std::min(low, glm::dot(x, toward));
         high = std::max(high, glm::dot(x, toward));
     }

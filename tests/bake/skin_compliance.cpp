@@ -48,15 +48,15 @@ std::vector<double> normal_compliances_mpn(const tissue::BakedOrgan& organ,
     if (!factor.factor(statics.stiffness_m))
         throw std::runtime_error("nothing holds " + organ.name);
     const auto normal = tissue::vertex_normals(skin.rest_m, skin.triangles);
-    const auto n = static_cast<std::size_t>(statics.unknowns);
-    std::vector<double> load(n * vertices.size(), 0.0), compliance(vertices.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        const std::uint32_t v = vertices[i];
+    tissue::SparseColumns load;
+    std::vector<double> compliance(vertices.size());
+    for (const std::uint32_t v : vertices) {
         for (std::uint32_t k = skin.row_start[v]; k < skin.row_start[v + 1]; ++k) {
             const std::int32_t dof = statics.dof[skin.row_node[k]];
             for (int axis = 0; dof >= 0 && axis < 3; ++axis)
-                load[i * n + dof + axis] += skin.row_weight[k] * normal[v][axis];
+                load.add(dof + axis, skin.row_weight[k] * normal[v][axis]);
         }
+        load.end_column();
     }
     factor.compliances(load, compliance);
     for (std::size_t i = 0; i < vertices.size(); ++i) {

@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -17,11 +19,12 @@ namespace {
 
 using glm::dvec3;
 
-constexpr int kColumns = 32;       // right-hand sides per solve
+constexpr int kColumns = 96;       // right-hand sides per solve
 constexpr double kRounding = 1e-8; // of W
 
 // The kernel at one skin vertex.
 struct Place {
+    std::size_t vertex;
     dvec3 normal;
     std::vector<KernelSample> samples;
 };
@@ -32,6 +35,30 @@ double size_at(const BoundaryTree& tree, std::span<const double> size, const dve
     return glm::dot(near.weight, dvec3{size[a], size[b], size[c]});
 }
 
+// Along a curve that stays in one part of the body as long as it can (Morton 1966): loads that are
+// solved for together then pass through the same blocks of the factor.
+void put_side_by_side(std::span<const dvec3> at_m, std::vector<Place>& places) {
+    dvec3 low_m{std::numeric_limits<double>::max()}, high_m{-low_m};
+    for (const dvec3& x : at_m) {
+        low_m = glm::min(low_m, x);
+        high_m = glm::max(high_m, x);
+    }
+    constexpr int kBits = 10;
+    const dvec3 size_m = high_m - low_m;
+    const double cell_m = std::max({size_m.x, size_m.y, size_m.z}) / ((1 << kBits) - 1);
+    std::vector<std::uint32_t> along(at_m.size(), 0);
+    for (std::size_t v = 0; v < at_m.size() && cell_m > 0.0; ++v) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto cell = static_cast<std::uint32_t>((at_m[v] - low_m)[axis] / cell_m);
+            for (int bit = 0; bit < kBits; ++bit)
+                along[v] |= (cell >> bit & 1u) << (3 * bit + axis);
+        }
+    }
+    std::stable_sort(places.begin(), places.end(), [&](const Place& a, const Place& b) {
+        return along[a.vertex] < along[b.vertex];
+    });
+}
+
 std::vector<Place> find_places(const TetMesh& mesh, const BoundaryTree& tree,
                                const ContactSurface& surface, const FootprintOptions& options) {
     const std::vector<double> size = nodal_size_m(mesh);
@@ -40,24 +67,27 @@ std::vector<Place> find_places(const TetMesh& mesh, const BoundaryTree& tree,
     for (std::size_t v = 0; v < surface.rest_m.size(); ++v) {
         const dvec3& at_m = surface.rest_m[v];
         const double reach_m = kernel_reach_m(size_at(tree, size, at_m), options);
-        places.push_back({normal[v], kernel_samples(tree, at_m, normal[v],
-                                                    surface.footprint_radius_m[v], reach_m)});
+        places.push_back(
+            {v, normal[v],
+             kernel_samples(tree, at_m, normal[v], surface.footprint_radius_m[v], reach_m)});
     }
+    put_side_by_side(surface.rest_m, places);
     return places;
 }
 
-// Column = kernel of `place` in `direction`.
+// One column more: the kernel of `place` in `direction`.
 void add_load(const LinearStatics& statics, const BoundaryTree& tree, const Place& place,
-              const dvec3& direction, std::span<double> column) {
+              const dvec3& direction, SparseColumns& columns) {
     for (const KernelSample& sample : place.samples) {
         const SurfaceShape shape =
             surface_shape(statics, tree.triangle[sample.at.triangle], sample.at.weight);
         for (int k = 0; k < shape.count; ++k) {
             const std::int32_t dof = statics.dof[shape.node[k]];
             for (int axis = 0; dof >= 0 && axis < 3; ++axis)
-                column[dof + axis] += sample.share * shape.value[k] * direction[axis];
+                columns.add(dof + axis, sample.share * shape.value[k] * direction[axis]);
         }
     }
+    columns.end_column();
 }
 
 // E W of every place in normal (3 i) and two tangents (3 i + 1, 3 i + 2).
@@ -71,19 +101,17 @@ std::vector<double> kernel_compliances(const TetMesh& mesh, int order, double po
     if (!factor.factor(statics.stiffness_m))
         throw std::invalid_argument("mesh term: nothing holds the body");
 
-    const std::size_t n = statics.unknowns, total = 3 * places.size();
-    std::vector<double> compliance(total), load(n * kColumns);
+    const std::size_t total = 3 * places.size();
+    std::vector<double> compliance(total);
     for (std::size_t first = 0; first < total; first += kColumns) {
         const std::size_t columns = std::min<std::size_t>(kColumns, total - first);
-        std::fill(load.begin(), load.end(), 0.0);
+        SparseColumns load;
         for (std::size_t c = 0; c < columns; ++c) {
             const Place& place = places[(first + c) / 3];
             const glm::dmat3 frame = tangent_frame(place.normal); // t1, t2, n
-            add_load(statics, tree, place, frame[static_cast<int>((first + c + 2) % 3)],
-                     std::span(load).subspan(c * n, n));
+            add_load(statics, tree, place, frame[static_cast<int>((first + c + 2) % 3)], load);
         }
-        factor.compliances(std::span(load).first(columns * n),
-                           std::span(compliance).subspan(first, columns));
+        factor.compliances(load, std::span(compliance).subspan(first, columns));
         if (progress)
             progress(static_cast<double>(first + columns) / static_cast<double>(total));
     }
@@ -140,8 +168,9 @@ void make_mesh_terms(const TetMesh& mesh, double poisson, std::span<const std::u
     const auto linear = kernel_compliances(mesh, 1, poisson, anchored, bed, tree, places, nullptr);
     const auto quadratic =
         kernel_compliances(mesh, 2, poisson, anchored, bed, tree, places, progress);
-    for (std::size_t v = 0; v < places.size(); ++v) {
-        const auto term = [&](int k) { return excess(quadratic[3 * v + k], linear[3 * v + k], v); };
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const std::size_t v = places[i].vertex;
+        const auto term = [&](int k) { return excess(quadratic[3 * i + k], linear[3 * i + k], v); };
         surface.mesh_term_n_m[v] = term(0);
         surface.mesh_term_t_m[v] = 0.5 * (term(1) + term(2));
     }

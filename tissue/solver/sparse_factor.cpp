@@ -17,6 +17,7 @@ namespace tissue {
 namespace {
 
 constexpr std::size_t kGroup = 12; // right-hand sides that are solved for at a time
+constexpr std::size_t kMany = 96;  // of those of which only the compliance is asked
 
 // CHOLMOD asks OpenMP for four threads by name; at nesting depth 0 every region runs on the
 // caller alone. Per thread, hence before every use.
@@ -45,14 +46,13 @@ const char* word(int status) noexcept {
 // one gather instead of two transpositions with their allocations (a tenth of the time).
 struct SparseFactor::Impl {
     cholmod_common common{};
-    std::vector<int> order;                     // unknown that is eliminated k-th
+    std::vector<int> order, place;              // unknown that is eliminated k-th, and when
     std::vector<int> column_start, row, source; // permuted lower triangle; place in the values
     std::vector<double> value;
     cholmod_sparse matrix{};
     cholmod_factor* factor = nullptr;
     std::vector<double> inverse;        // of the factor's tiles
     std::vector<double> ordered, below; // right-hand sides in that order; scratch of a solve
-    cholmod_dense *right = nullptr, *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
     bool usable = false;
 
     Impl() {
@@ -71,10 +71,6 @@ struct SparseFactor::Impl {
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
     ~Impl() {
-        cholmod_free_dense(&right, &common);
-        cholmod_free_dense(&solution, &common);
-        cholmod_free_dense(&work_y, &common);
-        cholmod_free_dense(&work_e, &common);
         cholmod_free_factor(&factor, &common);
         cholmod_finish(&common);
     }
@@ -102,25 +98,6 @@ struct SparseFactor::Impl {
         }
     }
 
-    // L X = B; the answer, in elimination order, stays in `solution`.
-    const double* solve_half(std::span<const double> b, std::size_t columns) noexcept {
-        stay_on_this_thread();
-        const std::size_t n = order.size();
-        right = cholmod_ensure_dense(&right, n, columns, n, CHOLMOD_REAL, &common);
-        if (right == nullptr)
-            return nullptr;
-        auto* to = static_cast<double*>(right->x);
-        for (std::size_t c = 0; c < columns; ++c) {
-            for (std::size_t k = 0; k < n; ++k)
-                to[c * n + k] = b[c * n + order[k]];
-        }
-        if (cholmod_solve2(CHOLMOD_L, factor, right, nullptr, &solution, nullptr, &work_y, &work_e,
-                           &common) == 0) {
-            return nullptr;
-        }
-        return static_cast<const double*>(solution->x);
-    }
-
     SupernodeView blocks() const noexcept {
         return {static_cast<int>(factor->nsuper),
                 static_cast<const int*>(factor->super),
@@ -131,15 +108,15 @@ struct SparseFactor::Impl {
                 inverse.data()};
     }
 
-    void make_room() {
+    void make_room(std::size_t columns) {
         const SupernodeView f = blocks();
         int most_below = kTile;
         for (int s = 0; s < f.blocks; ++s)
             most_below = std::max(most_below, f.row_start[s + 1] - f.row_start[s] -
                                                   (f.first[s + 1] - f.first[s]));
         inverse.resize(kTile * order.size());
-        ordered.resize(kGroup * order.size());
-        below.resize(kGroup * static_cast<std::size_t>(most_below));
+        ordered.resize(std::max(ordered.size(), columns * order.size()));
+        below.resize(std::max(below.size(), columns * static_cast<std::size_t>(most_below)));
     }
 
     // A X = B in place for at most kGroup columns.
@@ -160,7 +137,7 @@ struct SparseFactor::Impl {
     void permute(const SparsePattern& pattern) {
         const auto* elimination = static_cast<const int*>(factor->Perm);
         order.assign(elimination, elimination + pattern.size);
-        std::vector<int> place(order.size());
+        place.resize(order.size());
         for (int k = 0; k < pattern.size; ++k)
             place[order[k]] = k;
 
@@ -197,7 +174,7 @@ SparseFactor::SparseFactor(const SparsePattern& pattern) : impl_(std::make_uniqu
     impl_->permute(pattern);
     impl_->describe(impl_->column_start, impl_->row);
     impl_->analyze(CHOLMOD_NATURAL);
-    impl_->make_room();
+    impl_->make_room(kGroup);
     impl_->matrix.xtype = CHOLMOD_REAL;
     impl_->matrix.x = impl_->value.data();
 }
@@ -235,16 +212,25 @@ bool SparseFactor::solve(std::span<double> b, int columns) noexcept {
     return true;
 }
 
-bool SparseFactor::compliances(std::span<const double> b, std::span<double> out) noexcept {
+bool SparseFactor::compliances(const SparseColumns& b, std::span<double> out) {
     Impl& s = *impl_;
-    if (!s.usable || out.empty())
+    if (!s.usable || out.empty() || b.start.size() != out.size() + 1)
         return false;
+    stay_on_this_thread();
     const std::size_t n = s.order.size();
-    const double* x = s.solve_half(b, out.size());
-    if (x == nullptr)
-        return false;
-    for (std::size_t c = 0; c < out.size(); ++c)
-        out[c] = cblas_ddot(static_cast<int>(n), x + c * n, 1, x + c * n, 1);
+    s.make_room(std::min(kMany, out.size()));
+    for (std::size_t c = 0; c < out.size(); c += kMany) {
+        const std::size_t count = std::min(kMany, out.size() - c);
+        const std::span<double> y = std::span(s.ordered).first(count * n);
+        std::fill(y.begin(), y.end(), 0.0);
+        for (std::size_t j = 0; j < count; ++j) {
+            for (std::size_t k = b.start[c + j]; k < b.start[c + j + 1]; ++k)
+                y[j * n + static_cast<std::size_t>(s.place[b.unknown[k]])] += b.value[k];
+        }
+        descend_supernodes(s.blocks(), y, static_cast<int>(count), s.below);
+        for (std::size_t j = 0; j < count; ++j)
+            out[c + j] = cblas_ddot(static_cast<int>(n), y.data() + j * n, 1, y.data() + j * n, 1);
+    }
     return true;
 }
 

@@ -28,6 +28,19 @@ struct Supernodes {
     std::vector<double> value;
 };
 
+/// Loads on a few unknowns each; what is named twice in a column adds up.
+struct SparseColumns {
+    std::vector<std::size_t> start{0}; // columns + 1
+    std::vector<int> unknown;
+    std::vector<double> value;
+
+    void add(int at, double load) {
+        unknown.push_back(at);
+        value.push_back(load);
+    }
+    void end_column() { start.push_back(unknown.size()); }
+};
+
 class SparseFactor {
   public:
     /// Orders (AMD) and analyses. Throws std::runtime_error with CHOLMOD's word for it.
@@ -43,9 +56,9 @@ class SparseFactor {
     /// `b` unchanged, without a usable factor.
     bool solve(std::span<double> b, int columns) noexcept;
 
-    /// out[c] = b_c^T A^-1 b_c for `columns` columns: |L^-1 b|^2, half of a solve. False, and `out`
-    /// unchanged, without a usable factor.
-    bool compliances(std::span<const double> b, std::span<double> out) noexcept;
+    /// out[c] = b_c^T A^-1 b_c, half of a solve. False, and `out` unchanged, without a usable
+    /// factor. Columns that load the same part of a body side by side cost least. Allocates.
+    bool compliances(const SparseColumns& b, std::span<double> out);
 
     std::int64_t factor_entries() const noexcept; // stored, explicit zeros too
 

@@ -152,15 +152,20 @@ void invert_tiles(const SupernodeView& factor, std::span<double> inverse) noexce
     }
 }
 
-void solve_supernodes(const SupernodeView& factor, std::span<double> x, int columns,
-                      std::span<double> scratch) noexcept {
+void descend_supernodes(const SupernodeView& factor, std::span<double> x, int columns,
+                        std::span<double> scratch) noexcept {
     const std::size_t size = x.size() / static_cast<std::size_t>(columns);
-    const int n = static_cast<int>(size);
     for (int s = 0; s < factor.blocks; ++s) {
         const Block b = block_of(factor, s);
         if (!all_zero(x.data(), size, b, columns))
-            down(factor, b, x.data(), n, columns, scratch.data());
+            down(factor, b, x.data(), static_cast<int>(size), columns, scratch.data());
     }
+}
+
+void solve_supernodes(const SupernodeView& factor, std::span<double> x, int columns,
+                      std::span<double> scratch) noexcept {
+    descend_supernodes(factor, x, columns, scratch);
+    const int n = static_cast<int>(x.size() / static_cast<std::size_t>(columns));
     for (int s = factor.blocks; s-- > 0;)
         up(factor, block_of(factor, s), x.data(), n, columns, scratch.data());
 }

@@ -32,4 +32,8 @@ void invert_tiles(const SupernodeView& factor, std::span<double> inverse) noexce
 void solve_supernodes(const SupernodeView& factor, std::span<double> x, int columns,
                       std::span<double> scratch) noexcept;
 
+/// The first half alone, L Y = B: what is squared gives b^T A^-1 b.
+void descend_supernodes(const SupernodeView& factor, std::span<double> x, int columns,
+                        std::span<double> scratch) noexcept;
+
 } // namespace tissue
