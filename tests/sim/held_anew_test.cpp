@@ -9,7 +9,7 @@
 
 using namespace scene_tests;
 
-TEST_CASE("anchor: an organ held anew answers as if it had been baked so, within 7 %") {
+TEST_CASE("anchor: an organ held anew answers as if it had been baked so, and not otherwise") {
     const sim::LoadedScene scene = sim::load_scene("two_organs");
     const auto held = scene.organ[1];
     REQUIRE(held->name == "spleen");
@@ -37,7 +37,7 @@ TEST_CASE("anchor: an organ held anew answers as if it had been baked so, within
             stale_least = std::min(stale_least, old[d] / expected[d]);
         }
     }
-    CHECK(least > 0.93); // what the error budget grants the force of a tool
-    CHECK(most < 1.07);
+    CHECK(least > 0.999);
+    CHECK(most < 1.001);
     CHECK(stale_least < 0.85);
 }
