@@ -3,6 +3,7 @@
 #include "haptics/contact/surface_walk.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <random>
@@ -13,15 +14,45 @@ namespace {
 
 constexpr double kStep_s = 0.02; // a quadratic body wants one; statics do not depend on it
 
-bool anchored_below(const Body& body, const tissue::Triangle& corners) {
-    const tissue::ContactSurface& skin = body.organ->surface;
-    for (const std::uint32_t v : corners) {
-        for (std::uint32_t k = skin.row_start[v]; k < skin.row_start[v + 1]; ++k) {
-            if (body.organ->anchored[skin.row_node[k]])
-                return true;
+constexpr double kHeld = 0.5; // of what a place moves with: more lies against what holds it
+
+using Nodes = std::vector<std::uint8_t>; // 1: chosen
+
+// Nodes of the tets that a bed holds for the most part.
+Nodes bedded_nodes(const tissue::BakedOrgan& organ) {
+    const tissue::TetMesh& mesh = organ.mesh;
+    Nodes bedded(mesh.rest_m.size(), 0);
+    std::vector<double> stiffness_1pm2(mesh.tets.size(), 0.0);
+    for (const tissue::BedSample& sample : organ.bed) {
+        const auto [a, b, c, d] = mesh.tets[sample.tet];
+        const glm::dvec3 o = mesh.rest_m[a];
+        const double six_volumes_m3 =
+            glm::dot(mesh.rest_m[b] - o, glm::cross(mesh.rest_m[c] - o, mesh.rest_m[d] - o));
+        stiffness_1pm2[sample.tet] += 6.0 * sample.stiffness_m / six_volumes_m3;
+    }
+    const auto [least, most] = std::ranges::minmax(stiffness_1pm2);
+    const double half_1pm2 = 0.5 * most;
+    for (std::size_t t = 0; t < mesh.tets.size() && least < half_1pm2; ++t) {
+        for (const std::uint32_t node : mesh.tets[t]) {
+            if (stiffness_1pm2[t] > half_1pm2)
+                bedded[node] = 1;
         }
     }
-    return false;
+    return bedded;
+}
+
+// Share of the three corners' rows that lies on chosen nodes; quadratic rows name nodes on edges,
+// too, which are none.
+double share_on(const tissue::ContactSurface& skin, const tissue::Triangle& corners,
+                const Nodes& nodes) {
+    double sum = 0.0;
+    for (const std::uint32_t v : corners) {
+        for (std::uint32_t k = skin.row_start[v]; k < skin.row_start[v + 1]; ++k) {
+            if (skin.row_node[k] < nodes.size() && nodes[skin.row_node[k]])
+                sum += std::abs(static_cast<double>(skin.row_weight[k])) / 3.0;
+        }
+    }
+    return sum;
 }
 
 } // namespace
@@ -55,26 +86,32 @@ IndentPoint Indenter::press(const glm::dvec3& near_m, std::span<const double> de
     return out;
 }
 
-std::vector<glm::dvec3> random_places(const Body& body, int count, std::uint64_t seed) {
+std::vector<glm::dvec3> random_places(const Body& body, int count, std::uint64_t seed,
+                                      PressedSkin pressed) {
     const tissue::ContactSurface& skin = body.organ->surface;
+    const bool free =
+        pressed == PressedSkin::free && !body.organ->bed.empty() && !body.organ->mesh.tets.empty();
+    const Nodes bedded = free ? bedded_nodes(*body.organ) : Nodes{};
     std::vector<double> area_sum;
     std::vector<std::size_t> triangle;
     double sum = 0.0;
+    bool any = false;
     for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
         const tissue::Triangle& c = skin.triangles[t];
-        if (anchored_below(body, c))
+        if (share_on(skin, c, body.organ->anchored) > 0.0)
             continue;
+        any = any || !free || share_on(skin, c, bedded) <= kHeld;
         sum += glm::length(glm::cross(skin.rest_m[c[1]] - skin.rest_m[c[0]],
                                       skin.rest_m[c[2]] - skin.rest_m[c[0]]));
         area_sum.push_back(sum);
         triangle.push_back(t);
     }
-    if (triangle.empty())
-        throw std::invalid_argument("no skin is free of anchored tissue");
+    if (!any)
+        throw std::invalid_argument("no skin is free of held tissue");
     std::mt19937_64 random(seed);
     const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1.0p-53; };
     std::vector<glm::dvec3> places;
-    for (int i = 0; i < count; ++i) {
+    while (static_cast<int>(places.size()) < count) {
         const auto at = std::lower_bound(area_sum.begin(), area_sum.end(), unit() * sum);
         const tissue::Triangle& c = skin.triangles[triangle[at - area_sum.begin()]];
         double a = unit(), b = unit();
@@ -82,6 +119,8 @@ std::vector<glm::dvec3> random_places(const Body& body, int count, std::uint64_t
             a = 1.0 - a;
             b = 1.0 - b;
         }
+        if (free && share_on(skin, c, bedded) > kHeld)
+            continue;
         places.push_back((1.0 - a - b) * skin.rest_m[c[0]] + a * skin.rest_m[c[1]] +
                          b * skin.rest_m[c[2]]);
     }

@@ -35,9 +35,16 @@ class Indenter {
     double radius_m_;
 };
 
-/// Seeded, area-weighted places on the skin that a footprint's radius of free tissue surrounds:
-/// none where the kernel reaches anchored nodes.
-std::vector<glm::dvec3> random_places(const Body& body, int count, std::uint64_t seed);
+/// Of all skin, or of that which no bed holds either: held skin lies against what holds it, and no
+/// tool gets there.
+enum class PressedSkin : std::uint8_t { all, free };
+
+/// Seeded, area-weighted places on the skin that a footprint's radius of unanchored tissue
+/// surrounds: none where the kernel reaches anchored nodes or, on free skin, lies for more than
+/// half on tets of a bed. A bed under the whole body holds no part of it. Throws
+/// std::invalid_argument if there is no such skin.
+std::vector<glm::dvec3> random_places(const Body& body, int count, std::uint64_t seed,
+                                      PressedSkin skin = PressedSkin::all);
 
 /// A straight path of `length_m` over the skin from near `from_m`, `steps` + 1 places.
 std::vector<glm::dvec3> slide_places(const Body& body, const glm::dvec3& from_m,

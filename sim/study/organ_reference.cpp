@@ -69,7 +69,7 @@ void add_rows(const OrganReferenceOptions& o, int place, OrganReference& study) 
 std::string record_key(const OrganReferenceOptions& o, const tissue::BakedOrgan& organ) {
     std::string key = fmt::format(
         "# organ reference: {} ({} nodes, {} tets), E {} Pa, nu {}, hold {} {} {} {} {}, seed {}, "
-        "radius {} m, friction {}, edge {} in {}, step {}, depths",
+        "free skin, radius {} m, friction {}, edge {} in {}, step {}, depths",
         organ.name, organ.mesh.rest_m.size(), organ.mesh.tets.size(), o.material.young_pa,
         o.material.poisson, o.hold.toward.x, o.hold.toward.y, o.hold.toward.z, o.hold.share,
         o.hold.length_m, o.seed, o.press.radius_m, o.press.friction, o.press.edge_share,
@@ -91,7 +91,7 @@ StepTimes times_on(const OrganPointer& organ, const Body& usual, const OrganRefe
     config.step_s = kStep_s;
     TissueRig rig = make_tissue_rig(std::move(bodies), config);
     const Body& body = rig.bodies.front();
-    const std::vector<dvec3> places = random_places(usual, kTools, o.seed + 1);
+    const std::vector<dvec3> places = random_places(usual, kTools, o.seed + 1, PressedSkin::free);
     TipSeats seats;
     for (int i = 0; i < kTools; ++i) {
         const haptics::SurfacePoint at = nearest_on(body, places[i]).at;
@@ -124,7 +124,7 @@ OrganReference run_organ_reference(const OrganReferenceOptions& o,
     study.times = times_on(model, usual.body(), o);
     const std::string key = record_key(o, *organ);
     std::vector<ReferencePress> pressed = read_presses(o.record, key);
-    for (const dvec3& place : random_places(usual.body(), o.places, o.seed)) {
+    for (const dvec3& place : random_places(usual.body(), o.places, o.seed, PressedSkin::free)) {
         const int i = static_cast<int>(study.place.size());
         const Foot foot = nearest_on(usual.body(), place);
         const dvec3 at_m = place_on(usual.body(), foot.at),

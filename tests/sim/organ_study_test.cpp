@@ -62,3 +62,21 @@ TEST_CASE("organ: held on a side instead, both meshes are, alike, and it is felt
     options.hold.share = 1.5;
     CHECK_THROWS_AS(sim::run_organ_study(options), std::invalid_argument);
 }
+
+TEST_CASE("organ: no place on free skin lies against what holds the liver") {
+    const auto organ = sim::load_organ("liver");
+    const sim::Indenter liver(organ, organ->material, 1.5e-3);
+    const auto all = sim::random_places(liver.body(), 300, 1),
+               free = sim::random_places(liver.body(), 300, 1, sim::PressedSkin::free);
+    REQUIRE(free.size() == 300);
+    const auto bare = [](const glm::dvec3& x) { // the recipe's box, against the diaphragm
+        return x.x > -62e-3 && x.x < 22e-3 && x.y > 20e-3 && x.z < -20e-3;
+    };
+    CHECK(std::ranges::count_if(all, bare) > 10);
+    CHECK(std::ranges::count_if(free, bare) == 0);
+    // of the rest most is free, and what is free is pressed in the same order
+    std::size_t next = 0;
+    for (const glm::dvec3& place : all)
+        next += next < free.size() && place == free[next];
+    CHECK(next > 150);
+}
