@@ -94,19 +94,21 @@ std::vector<glm::dvec3> random_places(const Body& body, int count, std::uint64_t
     const Nodes bedded = free ? bedded_nodes(*body.organ) : Nodes{};
     std::vector<double> area_sum;
     std::vector<std::size_t> triangle;
-    double sum = 0.0;
-    bool any = false;
+    double sum = 0.0, free_sum = 0.0;
     for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
         const tissue::Triangle& c = skin.triangles[t];
         if (share_on(skin, c, body.organ->anchored) > 0.0)
             continue;
-        any = any || !free || share_on(skin, c, bedded) <= kHeld;
-        sum += glm::length(glm::cross(skin.rest_m[c[1]] - skin.rest_m[c[0]],
-                                      skin.rest_m[c[2]] - skin.rest_m[c[0]]));
+        const double area = glm::length(glm::cross(skin.rest_m[c[1]] - skin.rest_m[c[0]],
+                                                   skin.rest_m[c[2]] - skin.rest_m[c[0]]));
+        sum += area;
+        if (!free || share_on(skin, c, bedded) <= kHeld)
+            free_sum += area;
         area_sum.push_back(sum);
         triangle.push_back(t);
     }
-    if (!any)
+    constexpr double kTooLittle = 1e-3; // of the skin: places are drawn until one is free
+    if (!(free_sum > kTooLittle * sum))
         throw std::invalid_argument("no skin is free of held tissue");
     std::mt19937_64 random(seed);
     const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1.0p-53; };

@@ -159,6 +159,38 @@ TEST_CASE("loads of few unknowns are solved for as those of all, alone and besid
     }
 }
 
+TEST_CASE("compliances are those of whole solves, for more columns than go at a time") {
+    constexpr int kColumns = 200, n = 300;
+    const Matrix m = random_dominant(n, 4, 11);
+    tissue::SparseFactor factor(m.pattern);
+    tissue::SparseColumns few;
+    std::vector<double> out(kColumns, -1.0), load(kColumns * n, 0.0);
+    std::mt19937 random(12);
+    for (int c = 0; c < kColumns; ++c) {
+        for (int k = 0; k < c % 5; ++k) { // none at all, and some twice
+            const int at = static_cast<int>(random() % (k == 4 ? 2u : static_cast<unsigned>(n)));
+            for (int twice = 0; twice <= k % 2; ++twice) {
+                few.add(at, 1.0 + k);
+                load[c * n + at] += 1.0 + k;
+            }
+        }
+        few.end_column();
+    }
+    CHECK(!factor.compliances(few, out)); // not factored yet
+    CHECK(out[0] == -1.0);
+    REQUIRE(factor.factor(m.values));
+    CHECK(!factor.compliances(few, std::span(out).first(kColumns - 1))); // sizes do not fit
+    REQUIRE(factor.compliances(few, out));
+    std::vector<double> x = load;
+    REQUIRE(factor.solve(x, kColumns));
+    for (int c = 0; c < kColumns; ++c) {
+        double work = 0.0;
+        for (int i = 0; i < n; ++i)
+            work += load[c * n + i] * x[c * n + i];
+        CHECK(out[c] == doctest::Approx(work).epsilon(1e-10));
+    }
+}
+
 TEST_CASE("factoring again gives the same bits, also in another object") {
     const Matrix m = random_dominant(250, 4, 9), other = random_dominant(250, 4, 10);
     const std::vector<double> b = random_vector(250 * 7, 11);
