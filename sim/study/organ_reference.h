@@ -56,10 +56,10 @@ struct OrganReference {
     StepTimes times{};               // of three tips at places of its own
 };
 
-/// Places are on free skin (indent.h) of the corotated tier's mesh of `organ`, whatever ours is. `say` gets a line
-/// for each place. Throws as make_body() and press_reference() do.
-/// `keep` (may be empty) gets the study after each place. With only_recorded, a place that the
-/// record lacks is std::invalid_argument.
+/// Places are on free skin (indent.h) of the corotated tier's mesh of `organ`, whatever ours is.
+/// `say` gets a line for each place. Throws as make_body() and press_reference() do. `keep` (may be
+/// empty) gets the study after each place. With only_recorded, a place that the record lacks is
+/// std::invalid_argument.
 OrganReference run_organ_reference(const OrganReferenceOptions& options,
                                    const std::function<void(const std::string&)>& say,
                                    const std::function<void(const OrganReference&)>& keep = {});

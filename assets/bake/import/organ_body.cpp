@@ -180,7 +180,8 @@ void tell_share(double share) {
 }
 
 /// The organ floats: where it is held is the scene's to say, and what linear tetrahedra owe under a
-/// tip is solved for again then. Until it is held, a weak bed stands in (tissue/mesh/elastic_bed.h).
+/// tip is solved for again then. Until it is held, a weak bed stands in
+/// (tissue/mesh/elastic_bed.h).
 void add_response(ImportedBody& made, PhaseClock& clock) {
     tissue::BakedOrgan& organ = made.organ;
     organ.anchored.assign(organ.mesh.rest_m.size(), 0);
