@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/mat3x3.hpp>
+#include <vector>
 
 namespace bake {
 namespace {
@@ -38,6 +39,26 @@ glm::dvec3 shaped_mm(const SheetShape& s, const glm::dvec3& p) {
             lift + thick * p.z / s.size_mm.z};
 }
 
+/// Where the lines of a lattice run from the free edge at 0 to `length`: even, but where a cell is
+/// wider than follows the taper the first is pulled outwards. If the other edge is free too so is
+/// the last, with even cells between; else the others stay, for it is at the hinge that it bends.
+std::vector<double> lines_mm(double length, int cells, double taper, bool both) {
+    const double even = length / cells;
+    const double beside = std::max(kTaperShare * taper, kNarrowest * even);
+    std::vector<double> at;
+    for (int i = 0; i <= cells; ++i) {
+        at.push_back(even * i);
+    }
+    if (even <= beside || cells <= (both ? 2 : 1)) {
+        return at;
+    }
+    at[1] = beside;
+    for (int i = 2; both && i < cells; ++i) {
+        at[i] = beside + (length - 2.0 * beside) * (i - 1) / (cells - 2);
+    }
+    return at;
+}
+
 void place(const SheetShape& shape, std::vector<glm::dvec3>& point_m) {
     const glm::dmat3 turned = turn(shape.tilt_deg);
     for (glm::dvec3& p : point_m) {
@@ -56,6 +77,12 @@ Surface sheet_surface(const SheetShape& shape, double edge_m) {
 tissue::TetMesh sheet_mesh(const SheetShape& shape) {
     const auto [nx, ny, nz] = shape.cells;
     tissue::TetMesh mesh = tissue::box_mesh(kMm * shape.size_mm, shape.cells);
+    const auto x_mm = lines_mm(shape.size_mm.x, nx, shape.taper_mm, true);
+    const auto y_mm = lines_mm(shape.size_mm.y, ny, shape.taper_mm, false);
+    for (std::size_t node = 0; node < mesh.rest_m.size(); ++node) {
+        mesh.rest_m[node].x = kMm * x_mm[node % (nx + 1)];
+        mesh.rest_m[node].y = kMm * y_mm[node / (nx + 1) % (ny + 1)];
+    }
     mesh.tets.clear();
     // the tetrahedra of both halves, the second one seen in a mirror
     const int left = nx / 2;

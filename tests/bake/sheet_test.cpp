@@ -79,6 +79,22 @@ TEST_CASE("sheet: no tetrahedron is inside out, whatever a recipe may ask for") 
     }));
 }
 
+TEST_CASE("sheet: cells wider than its taper leave out little of it, and none is a sliver") {
+    auto s = flap();
+    const double skin_m3 = bake::volume_m3(bake::sheet_surface(s, 0.002));
+    for (const auto& cells : {std::array{9, 7, 1}, std::array{8, 7, 1}, std::array{7, 6, 1}}) {
+        s.cells = cells;
+        const auto mesh = bake::sheet_mesh(s);
+        CHECK(std::abs(tissue::volume_m3(mesh, mesh.rest_m) / skin_m3 - 1.0) < 0.02);
+    }
+    s.taper_mm = 1.0;
+    CHECK(bake::tet_quality(bake::sheet_mesh(s)).worst_dihedral_deg >= 6.0);
+    for (const auto& cells : {std::array{1, 1, 1}, std::array{2, 1, 1}, std::array{2, 2, 1}}) {
+        s.cells = cells; // no line is beside a free edge alone
+        CHECK(tissue::volume_m3(bake::sheet_mesh(s), bake::sheet_mesh(s).rest_m) > 0.0);
+    }
+}
+
 TEST_CASE("sheet: its tetrahedra are good, in both rounded corners too") {
     const auto mesh = bake::sheet_mesh(flap());
     CHECK(bake::tet_quality(mesh).worst_dihedral_deg >= 15.0);
