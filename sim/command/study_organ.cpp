@@ -118,9 +118,7 @@ void add_study_organ(CLI::App& study) {
     c->add_option("--against", o.other, "The same organ in another mesh: ratio place by place");
     c->add_option("--young", a->young_kpa, "Young's modulus, kPa");
     c->add_option("--poisson", o.material.poisson, "Poisson's ratio");
-    c->add_option(
-        "--points", o.points,
-        "Random places on skin that is not fixed; with --reference, that no bed holds either");
+    c->add_option("--points", o.points, "Random places on skin that nothing holds");
     c->add_option("--seed", o.seed, "Of the places");
     c->add_option("--depths", o.depth_mm, "mm");
     c->add_option("--slide-from", a->from_mm, "Start of the slide, mm")->expected(3);

@@ -71,19 +71,22 @@ Indenter::Indenter(std::shared_ptr<const tissue::BakedOrgan> organ,
 }
 
 IndentPoint Indenter::press(const glm::dvec3& near_m, std::span<const double> depth_m) {
+    return press(near_m, normal_on(body_, nearest_on(body_, near_m).at), depth_m);
+}
+
+IndentPoint Indenter::press(const glm::dvec3& near_m, const glm::dvec3& out,
+                            std::span<const double> depth_m) {
     const Foot foot = nearest_on(body_, near_m);
-    IndentPoint out;
-    out.place_m = place_on(body_, foot.at);
-    out.normal = normal_on(body_, foot.at);
+    IndentPoint point{.place_m = place_on(body_, foot.at), .normal = out};
     const glm::dmat3 compliance = feel_.mesh_compliance(foot.at);
-    out.mesh_mpn = glm::dot(out.normal, compliance * out.normal);
-    out.tangential_mpn =
-        0.5 * (compliance[0][0] + compliance[1][1] + compliance[2][2] - out.mesh_mpn);
+    point.mesh_mpn = glm::dot(out, compliance * out);
+    point.tangential_mpn =
+        0.5 * (compliance[0][0] + compliance[1][1] + compliance[2][2] - point.mesh_mpn);
     const haptics::LocalLaw law = law_on(body_, foot.at, 0, 0.0);
-    out.linear_mpn = law.normal_mpn;
+    point.linear_mpn = law.normal_mpn;
     for (const double d : depth_m)
-        out.force_n.push_back(press_force_n(law, out.mesh_mpn, d, radius_m_));
-    return out;
+        point.force_n.push_back(press_force_n(law, point.mesh_mpn, d, radius_m_));
+    return point;
 }
 
 std::vector<glm::dvec3> random_places(const Body& body, int count, std::uint64_t seed,

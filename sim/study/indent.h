@@ -10,11 +10,11 @@
 namespace sim {
 
 struct IndentPoint {
-    glm::dvec3 place_m{0.0}, normal{0.0};
-    double mesh_mpn = 0.0;       // H K^-1 H^T, normal
-    double tangential_mpn = 0.0; // the same across, mean of two directions
-    double linear_mpn = 0.0;     // linear part of the sub-grid law (mesh term less kernel)
-    std::vector<double> force_n; // at each depth asked for
+    glm::dvec3 place_m{0.0}, normal{0.0}; // what it is pressed against
+    double mesh_mpn = 0.0;                // H K^-1 H^T, along it
+    double tangential_mpn = 0.0;          // the same across, mean of two directions
+    double linear_mpn = 0.0;              // linear part of the sub-grid law (mesh term less kernel)
+    std::vector<double> force_n{};        // at each depth asked for
 };
 
 /// Statics of one organ: its tangent at rest, factored once. Stays where it was made.
@@ -27,6 +27,9 @@ class Indenter {
     /// Force at `depth_m` with the tip pressed along the skin's normal at the skin point nearest
     /// to `near_m`.
     IndentPoint press(const glm::dvec3& near_m, std::span<const double> depth_m);
+    /// Against the unit vector `out` instead, as a tool presses that comes from there.
+    IndentPoint press(const glm::dvec3& near_m, const glm::dvec3& out,
+                      std::span<const double> depth_m);
     const Body& body() const { return body_; }
 
   private:

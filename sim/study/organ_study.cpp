@@ -10,13 +10,19 @@ namespace sim {
 namespace {
 
 std::vector<IndentPoint> press_all(Indenter& indenter, const std::vector<glm::dvec3>& places,
-                                   const std::vector<double>& depth_mm) {
-    std::vector<double> depth_m;
-    for (const double d : depth_mm)
-        depth_m.push_back(1e-3 * d);
+                                   std::span<const double> depth_m) {
     std::vector<IndentPoint> out;
     for (const glm::dvec3& place : places)
         out.push_back(indenter.press(place, depth_m));
+    return out;
+}
+
+// As the first mesh was: the skins of two meshes may face elsewhere, a tool does not.
+std::vector<IndentPoint> press_alike(Indenter& indenter, const std::vector<IndentPoint>& first,
+                                     std::span<const double> depth_m) {
+    std::vector<IndentPoint> out;
+    for (const IndentPoint& point : first)
+        out.push_back(indenter.press(point.place_m, point.normal, depth_m));
     return out;
 }
 
@@ -81,11 +87,14 @@ OrganStudy run_organ_study(const OrganStudyOptions& o) {
     Indenter indenter(organ, o.material, organ->tip_radius_max_m);
     study.nodes = static_cast<int>(organ->mesh.rest_m.size() + organ->line.node_m.size());
     study.tets = static_cast<int>(organ->mesh.tets.size());
-    const auto places = random_places(indenter.body(), o.points, o.seed);
+    std::vector<double> depth_m;
+    for (const double d : o.depth_mm)
+        depth_m.push_back(1e-3 * d);
+    const auto places = random_places(indenter.body(), o.points, o.seed, PressedSkin::free);
     const auto path = slide_places(indenter.body(), 1e-3 * o.slide_from_mm, o.slide_heading,
                                    1e-3 * o.slide_mm, o.slide_steps);
-    study.point = press_all(indenter, places, o.depth_mm);
-    study.slide = press_all(indenter, path, o.depth_mm);
+    study.point = press_all(indenter, places, depth_m);
+    study.slide = press_all(indenter, path, depth_m);
     rate_slide(study);
     if (o.other.empty())
         return study;
@@ -93,8 +102,8 @@ OrganStudy run_organ_study(const OrganStudyOptions& o) {
     Indenter second(other, o.material, other->tip_radius_max_m);
     study.other_nodes = static_cast<int>(other->mesh.rest_m.size() + other->line.node_m.size());
     study.other_tets = static_cast<int>(other->mesh.tets.size());
-    study.other_point = press_all(second, places, o.depth_mm);
-    study.other_slide = press_all(second, path, o.depth_mm);
+    study.other_point = press_alike(second, study.point, depth_m);
+    study.other_slide = press_alike(second, study.slide, depth_m);
     rate_pairs(study);
     return study;
 }

@@ -13,7 +13,7 @@ namespace {
 
 // Three tools that press on one organ of some 500 nodes at once take a tissue step of 7 ms (p99,
 // one core), of the 10 ms that there are; twice the nodes take 18 ms.
-constexpr double kNodes = 400.0; // before grading, of all bodies together, if --edge says nothing
+constexpr double kNodes = 340.0; // before grading, of all bodies together, if --edge says nothing
 constexpr std::size_t kMostNodes = 700; // of one organ, before it is said
 
 constexpr double kFineShare = 0.5; // of the edge, at places that are asked for

@@ -53,7 +53,9 @@ struct Shape {
     const NearestOnSurface& nearest;
     const Body& body;
     RemeshOptions keep;
-    double radii_per_edge = 1.8; // edges where the body is strongly curved
+    // Edges where the body is strongly curved: five around a slender end, whose section then bends
+    // as the circle of its area to 2 %; that of four is 5 % too stiff, that of three 21 %.
+    double radii_per_edge = 1.25;
 };
 
 /// One boundary, all attempts of TetGen; nothing if none succeeds.

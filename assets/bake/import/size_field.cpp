@@ -11,7 +11,7 @@ namespace bake {
 namespace {
 
 constexpr double kThicknessPerEdge = 1.5; // one layer of tetrahedra through a thin place
-constexpr double kCurvedShare = 0.5, kThinShare = 0.25; // of the edge, at least
+constexpr double kCurvedShare = 0.35, kThinShare = 0.25; // of the edge, at least
 constexpr double kCreaseDeg = 45.0, kTipDeg = 180.0;
 constexpr double kMostCreases = 0.3;   // length of creases times the skin's edge, over area
 constexpr double kMostDangling = 0.05; // share of crease points where one crease ends

@@ -16,9 +16,9 @@ RemeshOptions edges_to_keep(const Surface& surface, double skin_m);
 std::vector<double> thickness_m(const Surface& surface, double most_m);
 
 /// Wanted edge for `skin`: `edge_m`, shorter where the surface is curved (`radii_per_edge` times
-/// the radius of curvature, down to half) or where the body, or the gap between two parts of it, is
-/// thin (down to a quarter). What is smaller than an edge (noise, steps) is smoothed away before
-/// looking.
+/// the radius of curvature, down to 0.35 of it) or where the body, or the gap between two parts of
+/// it, is thin (down to a quarter). What is smaller than an edge (noise, steps) is smoothed away
+/// before looking.
 SizeAt shape_size(const Surface& skin, double edge_m, double radii_per_edge,
                   const RemeshOptions& keep);
 
