@@ -10,7 +10,6 @@
 #include <glm/vec3.hpp>
 #include <numbers>
 #include <unistd.h>
-#include <vector>
 
 using namespace command_tests;
 

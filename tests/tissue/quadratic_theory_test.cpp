@@ -14,7 +14,6 @@ struct PulledBody {
     tissue::QuadraticMesh mesh;
     tissue::QuadraticModel model;
     std::vector<double> end, load_n;
-    std::vector<dvec3> rest_m;
 
     PulledBody(const tissue::TetMesh& corners, const tissue::Material& material, double end_m,
                const dvec3& pull_n)
