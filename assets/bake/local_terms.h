@@ -12,7 +12,8 @@
 
 namespace bake {
 
-/// No mesh term above the compliance of a half-space under the same kernel. Call after
+/// No mesh term above the compliance of a half-space under the same kernel, and what is cut no
+/// longer leans. Call after
 /// make_mesh_terms.
 void keep_terms_local(double poisson, tissue::ContactSurface& surface);
 

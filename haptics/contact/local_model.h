@@ -26,6 +26,7 @@ struct PatchVertex {
     double radius_over_thickness = 0.0; // of this tool's tip and the tissue here
     double normal_mpn = 0.0;            // linear part of the sub-grid law, see LocalLaw
     double tangential_mpn = 0.0;
+    std::array<double, 6> lean_mpn{}; // of the mesh, neither of these: xx, yy, zz, yz, xz, xy
 };
 
 struct PatchTriangle {

@@ -127,6 +127,16 @@ struct Scratch {
     std::array<PointModes, kTools> point;
 };
 
+// What the corners lean, mixed.
+glm::dmat3 lean_at(const ToolPatch& patch, const SurfacePoint& at) noexcept {
+    std::array<double, 6> s{};
+    const auto& corner = patch.triangle[at.triangle].vertex;
+    for (int k = 0; k < 3; ++k)
+        for (std::size_t i = 0; i < s.size(); ++i)
+            s[i] += at.weight[k] * patch.vertex[corner[k]].lean_mpn[i];
+    return {{s[0], s[5], s[4]}, {s[5], s[1], s[3]}, {s[4], s[3], s[2]}};
+}
+
 // Carries tool i's contact point to where it belongs for this tip and fills its row. In the air
 // the step is halved while it leads away from the tip: over a strongly curved surface a
 // whole step overshoots. Returns false if the tool has slid off its patch.
@@ -140,7 +150,7 @@ bool place_tool(const RunningModel& model, const FreeMotion& free, int i, Surfac
     glm::dmat3& own = scratch.problem.compliance[i][i];
 
     read_patch(patch, at, free, row, point);
-    own = compliance(point, point, patch.modes);
+    own = compliance(point, point, patch.modes) + lean_at(patch, at);
     if (memory.grasped)
         return true;
     glm::dvec3 slip_m = predicted_slip(row, own, memory);
@@ -159,7 +169,7 @@ bool place_tool(const RunningModel& model, const FreeMotion& free, int i, Surfac
             break;
         slip_m *= 0.5;
     }
-    own = compliance(point, point, patch.modes);
+    own = compliance(point, point, patch.modes) + lean_at(patch, at);
     return !at_rim ||
            glm::length(tangential(row.tip_m - row.surface_free_m, row.normal)) <= kSlideOff_m;
 }

@@ -1,6 +1,7 @@
 #include "sim/bridge/answer_to_local_model.h"
 
 #include "haptics/contact/surface_walk.h"
+#include "sim/bridge/mesh_lean.h"
 #include "tissue/response/mode_shapes.h"
 #include "tissue/response/rod_basis.h"
 
@@ -200,17 +201,21 @@ void fill_shapes(const Body& body, const tissue::Patch& patch, int body_index, S
     std::copy_n(shown.shape.begin(), patch.vertex.size(), out.shape.begin());
 }
 
-void fill_patch(const Body& body, const tissue::Patch& patch, int tool,
+// `triangle`: of the contact, with which all of the patch has turned.
+void fill_patch(const Body& body, const tissue::Patch& patch, int tool, int triangle,
                 haptics::ToolPatch& out) noexcept {
     out.vertices = static_cast<int>(patch.vertex.size());
     out.triangles = static_cast<int>(patch.triangle.size());
+    const glm::dmat3 turn = body.lean_mpn.empty() ? glm::dmat3{1.0} : turn_on(body, triangle);
     for (int v = 0; v < out.vertices; ++v) {
         const std::uint32_t s = patch.vertex[v];
         out.vertex[v] = {.anchor_m = body.skin_m[s],
                          .normal = body.skin_normal[s],
                          .radius_over_thickness = body.tip[tool].radius_m * body.thinness_1pm[s],
                          .normal_mpn = body.normal_mpn[s],
-                         .tangential_mpn = body.tangential_mpn[s]};
+                         .tangential_mpn = body.tangential_mpn[s],
+                         .lean_mpn = body.lean_mpn.empty() ? tissue::SymmetricTensor{}
+                                                           : turned(body.lean_mpn[s], turn)};
     }
     for (int t = 0; t < out.triangles; ++t) {
         out.triangle[t] = {
@@ -238,7 +243,7 @@ void fill_tool(TissueRig& rig, int tool, haptics::ToolPatch& out) noexcept {
     tissue::gather_patch(body.organ->surface, body.skin_m,
                          static_cast<std::uint32_t>(contact.at.triangle),
                          rig.config.patch_radius_m + contact.speed_mps * span_s, patch);
-    fill_patch(body, patch, tool, out);
+    fill_patch(body, patch, tool, contact.at.triangle, out);
     if (body.soft)
         fill_shapes(body, patch, contact.body, rig.shown[tool], out);
     out.contact = {patch.triangle_local[contact.at.triangle], contact.at.weight};

@@ -1,5 +1,6 @@
 #include "sim/bridge/body.h"
 
+#include "sim/bridge/mesh_lean.h"
 #include "tissue/response/boundary_tree.h"
 #include "tissue/response/finite_sphere.h"
 #include "tissue/response/footprint.h"
@@ -123,6 +124,7 @@ std::shared_ptr<const tissue::BakedOrgan> rod_of(const tissue::BakedOrgan& organ
         skin.thickness_m.push_back(thick_m);
         skin.mesh_term_n_m.push_back(0.0);
         skin.mesh_term_t_m.push_back(0.0);
+        skin.mesh_lean_m.emplace_back();
     }
     return rod;
 }
@@ -176,6 +178,7 @@ Body make_body(std::shared_ptr<const tissue::BakedOrgan> organ, const tissue::Ma
     }
     fill_tips(body, tip_radius_m);
     fill_law(body);
+    body.lean_mpn = rest_lean(body);
     tissue::Solid solid =
         tissue::make_solid(tier,
                            {.mesh = body.organ->mesh,

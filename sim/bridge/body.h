@@ -64,6 +64,7 @@ struct Body {
     double longest_edge_m = 0.0;                 // of the skin at rest
     // the sub-grid law: at each skin vertex for this material, and for the tip of each tool
     std::vector<double> thinness_1pm, normal_mpn, tangential_mpn; // thinness: 1 / thickness
+    std::vector<tissue::SymmetricTensor> lean_mpn; // at rest, see mesh_lean.h; empty: none leans
     std::array<TipLaw, haptics::kTools> tip;
 };
 

@@ -2,6 +2,7 @@
 
 #include "haptics/contact/carried_point.h"
 #include "haptics/contact/grasp.h"
+#include "sim/bridge/mesh_lean.h"
 
 #include <algorithm>
 #include <glm/geometric.hpp>
@@ -67,15 +68,17 @@ void follow(TissueRig& rig, int tool, const haptics::ToolTip& tip) noexcept {
     const Body& body = rig.bodies[contact.body];
     constexpr int kPasses = 2; // the normal turns under the point as it moves
     for (int pass = 0; pass < kPasses; ++pass) {
+        const glm::dmat3 lean = lean_on(body, contact.at); // none of it is in the skin as placed
         const haptics::ContactRow row{.active = true,
                                       .tip_m = tip.centre_m,
-                                      .surface_free_m = place_on(body, contact.at),
+                                      .surface_free_m =
+                                          place_on(body, contact.at) + lean * contact.force_n,
                                       .normal = normal_on(body, contact.at),
                                       .tip_radius_m = tip.radius_m,
                                       .friction = body.material.friction,
                                       .law = law_on(body, contact.at, tool, rig.floor_mpn[tool])};
         const glm::dvec3 slip =
-            haptics::predicted_slip(row, contact.own_compliance, rig.memory[tool]);
+            haptics::predicted_slip(row, contact.own_compliance + lean, rig.memory[tool]);
         contact.at = carried(body, contact.at, slip, tip.centre_m).point;
     }
 }
@@ -229,14 +232,18 @@ void condense_rows(TissueRig& rig, haptics::ContactProblem& problem) noexcept {
     if (rig.organs)
         brace_tools(rig, problem);
     make_symmetric(problem);
-    for (int i = 0; i < kTools; ++i) {
-        if (problem.row[i].active)
-            rig.contact[i].own_compliance = problem.compliance[i][i];
-    }
     // the free motion was under the forces of before: the skin free of them is this much farther
     for (int i = 0; i < kTools; ++i) {
         for (int j = 0; j < kTools; ++j)
             problem.row[i].surface_free_m += problem.compliance[i][j] * rig.contact[j].before_n;
+    }
+    // what leans acts between tool and skin, as the law does: the skin does not move by it
+    for (int i = 0; i < kTools; ++i) {
+        FemContact& contact = rig.contact[i];
+        if (!problem.row[i].active)
+            continue;
+        contact.own_compliance = problem.compliance[i][i];
+        problem.compliance[i][i] += lean_on(rig.bodies[contact.body], contact.at);
     }
 }
 

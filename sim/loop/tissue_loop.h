@@ -25,7 +25,7 @@ struct EmbeddedTarget {
 struct FemContact {
     int body = -1; // -1: nothing within reach
     haptics::SurfacePoint at;
-    glm::dmat3 own_compliance{0.0}; // of the surface point there, last step
+    glm::dmat3 own_compliance{0.0}; // of the mesh's surface point there, last step
     glm::dvec3 force_n{0.0};        // on the tool
     glm::dvec3 before_n{0.0};       // that the free motion of the step being made is under
     glm::dvec3 normal{0.0, 0.0, 1.0};

@@ -1,6 +1,7 @@
 #include "sim/study/indent.h"
 
 #include "haptics/contact/surface_walk.h"
+#include "sim/bridge/mesh_lean.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,7 +79,7 @@ IndentPoint Indenter::press(const glm::dvec3& near_m, const glm::dvec3& out,
                             std::span<const double> depth_m) {
     const Foot foot = nearest_on(body_, near_m);
     IndentPoint point{.place_m = place_on(body_, foot.at), .normal = out};
-    const glm::dmat3 compliance = feel_.mesh_compliance(foot.at);
+    const glm::dmat3 compliance = feel_.mesh_compliance(foot.at) + lean_on(body_, foot.at);
     point.mesh_mpn = glm::dot(out, compliance * out);
     point.tangential_mpn =
         0.5 * (compliance[0][0] + compliance[1][1] + compliance[2][2] - point.mesh_mpn);

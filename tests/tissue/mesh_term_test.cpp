@@ -91,6 +91,56 @@ TEST_CASE("mesh term: with it coarse linear tets yield as fine quadratic ones un
     }
 }
 
+// A beam that is held at one end and loaded near its other, on top: upwards and to the side it
+// bends, along itself it does not, and what it owes leans between top and end face.
+TEST_CASE("mesh term: in every direction, along the skin and aslant, it makes up for the mesh") {
+    const dvec3 size{.08, .016, .012};
+    const auto mesh = tissue::box_mesh(size, {10, 2, 2});
+    std::vector<std::uint8_t> anchored(mesh.rest_m.size());
+    for (std::size_t i = 0; i < anchored.size(); ++i)
+        anchored[i] = mesh.rest_m[i].x < 1e-9 ? 1 : 0;
+    auto skin = block::top_skin(size, 4e-3);
+    tissue::make_footprints(mesh, anchored, {}, skin);
+    tissue::make_mesh_terms(mesh, kPoisson, anchored, {}, skin);
+    const std::size_t v = static_cast<std::size_t>(
+        std::ranges::max_element(skin.rest_m, {},
+                                 [](const dvec3& x) { return x.x - std::abs(x.y - .008); }) -
+        skin.rest_m.begin());
+    const dvec3 n = tissue::vertex_normals(skin.rest_m, skin.triangles)[v];
+    const auto term = [&](const dvec3& d, bool leans) {
+        const auto& s = skin.mesh_lean_m[v];
+        const double normal = glm::dot(d, n) * glm::dot(d, n);
+        const double plain =
+            skin.mesh_term_n_m[v] * normal + skin.mesh_term_t_m[v] * (1.0 - normal);
+        return plain + (leans ? s[0] * d.x * d.x + s[1] * d.y * d.y + s[2] * d.z * d.z +
+                                    2.0 * (s[3] * d.y * d.z + s[4] * d.x * d.z + s[5] * d.x * d.y)
+                              : 0.0);
+    };
+    const auto kernel = [&](int order, const dvec3& d) {
+        const auto statics = tissue::make_linear_statics(mesh, order, kPoisson, anchored);
+        const auto tree = tissue::make_boundary_tree(mesh);
+        std::vector<double> load(statics.unknowns, 0.0);
+        for (const auto& [at, share] : tissue::kernel_samples(
+                 tree, skin.rest_m[v], n, skin.footprint_radius_m[v], 0.01, 14)) {
+            const auto shape =
+                tissue::surface_shape(statics, tree.triangle[at.triangle], at.weight);
+            for (int k = 0; k < shape.count; ++k)
+                for (int axis = 0; axis < 3; ++axis)
+                    if (const std::int32_t dof = statics.dof[shape.node[k]]; dof >= 0)
+                        load[dof + axis] += share * shape.value[k] * d[axis];
+        }
+        return energy(statics, load);
+    };
+    double missed = 0.0;
+    for (const dvec3& d : {dvec3{1, 0, 0}, dvec3{0, 1, 0}, dvec3{0, 0, 1}, dvec3{.6, 0, .8},
+                           dvec3{.6, .8, 0}, dvec3{-.6, 0, .8}}) {
+        const double owed = kernel(2, d) - kernel(1, d), most = kernel(2, {0, 1, 0});
+        CHECK(std::abs(term(d, true) - owed) < 0.02 * most); // of sampling
+        missed = std::max(missed, std::abs(term(d, false) - owed) / most);
+    }
+    CHECK(missed > 0.1); // along and across alone
+}
+
 TEST_CASE("mesh term: progress runs to the end") {
     static double last;
     last = -1.0;

@@ -14,6 +14,8 @@ namespace organ_bytes {
 inline constexpr std::size_t kHashSize = 8;
 // of an organ without a line: four counts and the bed
 inline constexpr std::size_t kLineSize = 4 * 8 + 8;
+// of four vertices: a count and six numbers for each
+inline constexpr std::size_t kLeanSize = 8 + 4 * 6 * 8;
 
 // One tetrahedron with its four faces as skin, rows of one or two nodes.
 inline tissue::BakedOrgan small_organ() {
@@ -35,6 +37,8 @@ inline tissue::BakedOrgan small_organ() {
     o.surface.thickness_m = {1e-2, 2e-2, 3e-2, 4e-2};
     o.surface.mesh_term_n_m = {1, 2, 3, 4};
     o.surface.mesh_term_t_m = {5, 6, 7, 8};
+    o.surface.mesh_lean_m = {
+        {.1, .2, .3, .4, .5, .6}, {}, {-.1, 0, .1, 0, 0, 0}, {0, 0, 0, 1, 2, 3}};
     o.material.young_pa = 1234.5;
     o.material.source = "made up";
     o.recipe_hash = 0x0123456789ABCDEFULL;

@@ -191,6 +191,39 @@ TEST_CASE("compliances are those of whole solves, for more columns than go at a 
     }
 }
 
+TEST_CASE("compliances of three columns with each other are those of whole solves") {
+    constexpr int kPlaces = 70, n = 300; // more than go at a time
+    const Matrix m = random_dominant(n, 4, 13);
+    tissue::SparseFactor factor(m.pattern);
+    tissue::SparseColumns few;
+    std::vector<double> load(3 * kPlaces * n, 0.0);
+    std::mt19937 random(14);
+    for (int c = 0; c < 3 * kPlaces; ++c) {
+        for (int k = 0; k < 4; ++k) {
+            const int at = static_cast<int>(random() % static_cast<unsigned>(n));
+            few.add(at, 1.0 + k);
+            load[c * n + at] += 1.0 + k;
+        }
+        few.end_column();
+    }
+    std::vector<std::array<double, 6>> out(kPlaces);
+    CHECK(!factor.compliances(few, out)); // not factored yet
+    REQUIRE(factor.factor(m.values));
+    CHECK(!factor.compliances(few, std::span(out).first(kPlaces - 1))); // sizes do not fit
+    REQUIRE(factor.compliances(few, out));
+    std::vector<double> x = load;
+    REQUIRE(factor.solve(x, 3 * kPlaces));
+    constexpr int kFirst[]{0, 1, 2, 1, 0, 0}, kSecond[]{0, 1, 2, 2, 2, 1};
+    for (int place = 0; place < kPlaces; ++place) {
+        for (int k = 0; k < 6; ++k) {
+            double work = 0.0;
+            for (int i = 0; i < n; ++i)
+                work += load[(3 * place + kFirst[k]) * n + i] * x[(3 * place + kSecond[k]) * n + i];
+            CHECK(out[place][k] == doctest::Approx(work).scale(1.0).epsilon(1e-10));
+        }
+    }
+}
+
 TEST_CASE("factoring again gives the same bits, also in another object") {
     const Matrix m = random_dominant(250, 4, 9), other = random_dominant(250, 4, 10);
     const std::vector<double> b = random_vector(250 * 7, 11);

@@ -1,7 +1,8 @@
-// The file format of a baked organ, version 4. All little endian, doubles as IEEE 754 bits:
+// The file format of a baked organ, version 5. All little endian, doubles as IEEE 754 bits:
 //   magic "TROCORGN", u32 version, then the fields of BakedOrgan in the order of write_fields(),
 //   each list as u64 count and its items, then u64 FNV-1a of everything before it.
-// Version 3 has no line of a rod, version 2 no order, which is 1. One list of fields serves both
+// Version 4 has no leaning mesh terms, which are then none, version 3 no line of a rod, version 2
+// no order, which is 1. One list of fields serves both
 // directions and all versions, so that they cannot drift apart.
 #include "tissue/mesh/baked_organ.h"
 
@@ -17,7 +18,8 @@ namespace tissue {
 namespace {
 
 constexpr std::string_view kMagic = "TROCORGN";
-constexpr std::uint32_t kVersion = 4, kOldestVersion = 2, kOrderSince = 3, kLineSince = 4;
+constexpr std::uint32_t kVersion = 5, kOldestVersion = 2, kOrderSince = 3, kLineSince = 4,
+                        kLeanSince = 5;
 constexpr std::size_t kHashSize = 8;
 constexpr std::size_t kBedSampleSize = 4 + 5 * 8;
 
@@ -199,6 +201,11 @@ ListStarts fields(Stream& s, Organ& o, std::uint32_t version = kVersion) {
     s.list(o.surface.thickness_m);
     s.list(o.surface.mesh_term_n_m);
     s.list(o.surface.mesh_term_t_m);
+    if (version >= kLeanSince) {
+        s.list(o.surface.mesh_lean_m);
+    } else if constexpr (std::same_as<Stream, Reader>) {
+        o.surface.mesh_lean_m.assign(o.surface.mesh_term_t_m.size(), {});
+    }
     at.line = here();
     if (version >= kLineSince) {
         s.list(o.line.node_m);
@@ -303,6 +310,7 @@ void check_organ(const BakedOrgan& o, const ListStarts& at) {
     check_size(s.thickness_m.size(), rows, "thicknesses", at.sizes);
     check_size(s.mesh_term_n_m.size(), rows, "normal mesh terms", at.sizes);
     check_size(s.mesh_term_t_m.size(), rows, "tangential mesh terms", at.sizes);
+    check_size(s.mesh_lean_m.size(), rows, "leaning mesh terms", at.sizes);
     check_indices(s.frame_node, 0U, nodes, "node of a frame", at.frame_node);
     check_rows(s, o.order == 1 ? nodes : static_cast<std::uint32_t>(quadratic_node_count(o.mesh)),
                at);

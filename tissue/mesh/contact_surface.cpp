@@ -42,6 +42,17 @@ bool triangle_frame(const dvec3& a, const dvec3& b, const dvec3& c, dmat3& frame
     return true;
 }
 
+// What of a triangle at rest never changes, and its frame; edge_1pm 0 if it is degenerate.
+SkinFrame rest_frame(const dvec3& a, const dvec3& b, const dvec3& c, dmat3& from) noexcept {
+    SkinFrame frame;
+    if (!triangle_frame(a, b, c, from))
+        return frame;
+    frame.edge_1pm = 1.0 / glm::dot(b - a, from[0]);
+    frame.height_1pm = 1.0 / glm::dot(c - a, from[1]);
+    frame.skew = frame.edge_1pm * glm::dot(c - a, from[0]) * frame.height_1pm;
+    return frame;
+}
+
 // How a frame triangle turned: its normal turns into the new normal, and within the plane it turns
 // by the rotation part of the in-plane deformation gradient F = [f00 f01; 0 f11], whose angle is
 // atan2(-f01, f00 + f11). False if it is degenerate, now or at rest.
@@ -133,21 +144,23 @@ SkinFrames make_skin_frames(const ContactSurface& surface, std::span<const dvec3
         const std::uint32_t v = frames.vertex[k];
         if (k == 0 || frames.frame.back().node != surface.frame_node[v]) {
             const auto [i, j, l] = surface.frame_node[v];
-            const dvec3 &a = rest_node_m[i], &b = rest_node_m[j], &c = rest_node_m[l];
-            SkinFrame& frame = frames.frame.emplace_back();
+            SkinFrame& frame = frames.frame.emplace_back(
+                rest_frame(rest_node_m[i], rest_node_m[j], rest_node_m[l], from));
             frame.node = surface.frame_node[v];
-            firm = triangle_frame(a, b, c, from);
-            if (firm) {
-                frame.edge_1pm = 1.0 / glm::dot(b - a, from[0]);
-                frame.height_1pm = 1.0 / glm::dot(c - a, from[1]);
-                frame.skew = frame.edge_1pm * glm::dot(c - a, from[0]) * frame.height_1pm;
-            }
+            firm = frame.edge_1pm != 0.0;
         }
         frames.frame.back().stop = static_cast<std::uint32_t>(k + 1);
         frames.offset_m.push_back(firm ? glm::transpose(from) * surface.offset_m[v]
                                        : surface.offset_m[v]);
     }
     return frames;
+}
+
+dmat3 triangle_turn(const std::array<dvec3, 3>& rest_m,
+                    const std::array<dvec3, 3>& now_m) noexcept {
+    dmat3 from, to;
+    const SkinFrame rest = rest_frame(rest_m[0], rest_m[1], rest_m[2], from);
+    return turned(rest, now_m[0], now_m[1], now_m[2], to) ? to * glm::transpose(from) : dmat3{1.0};
 }
 
 void place_surface(const ContactSurface& surface, const SkinFrames& frames,

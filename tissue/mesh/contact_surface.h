@@ -12,6 +12,8 @@
 
 namespace tissue {
 
+using SymmetricTensor = std::array<double, 6>; // xx, yy, zz, yz, xz, xy
+
 struct ContactSurface {
     std::vector<glm::dvec3> rest_m;
     std::vector<Triangle> triangles;
@@ -25,10 +27,11 @@ struct ContactSurface {
     std::vector<std::array<std::uint32_t, 3>> frame_node; // tissue nodes whose triangle turns R_v
 
     // what the mesh cannot resolve under the kernel, per vertex
-    std::vector<double> footprint_radius_m; // r of the kernel here
-    std::vector<double> thickness_m;        // of the tissue below, along the normal
-    std::vector<double> mesh_term_n_m;      // dW_n * E: softening that linear tets owe, m/N * Pa
-    std::vector<double> mesh_term_t_m;      // dW_t * E
+    std::vector<double> footprint_radius_m;   // r of the kernel here
+    std::vector<double> thickness_m;          // of the tissue below, along the normal
+    std::vector<double> mesh_term_n_m;        // dW_n * E: softening that linear tets owe, m/N * Pa
+    std::vector<double> mesh_term_t_m;        // dW_t * E
+    std::vector<SymmetricTensor> mesh_lean_m; // rest of dW * E, a tensor: see mesh_term.h
 };
 
 /// Triangle adjacency; throws naming the edge if the surface is not manifold.
@@ -48,6 +51,11 @@ struct SkinFrames {
 };
 /// None for rigid scenery. Made once at load.
 SkinFrames make_skin_frames(const ContactSurface& surface, std::span<const glm::dvec3> rest_node_m);
+
+/// Rotation of a triangle from rest to now: its normal turns into the new normal, and within the
+/// plane it turns by the rotation part of its deformation. 1 if degenerate. Real-time safe.
+glm::dmat3 triangle_turn(const std::array<glm::dvec3, 3>& rest_m,
+                         const std::array<glm::dvec3, 3>& now_m) noexcept;
 
 /// Positions and unit normals of every vertex for nodes at `node_m`. Sizes must fit.
 void place_surface(const ContactSurface& surface, const SkinFrames& frames,

@@ -198,6 +198,7 @@ void make_footprints(const TetMesh& mesh, std::span<const std::uint8_t> anchored
     surface.thickness_m.clear();
     surface.mesh_term_n_m.assign(vertices, 0.0);
     surface.mesh_term_t_m.assign(vertices, 0.0);
+    surface.mesh_lean_m.assign(vertices, {});
 
     for (std::size_t v = 0; v < vertices; ++v) {
         const dvec3& at_m = surface.rest_m[v];

@@ -19,8 +19,8 @@ namespace {
 
 using glm::dvec3;
 
-constexpr int kColumns = 96;       // right-hand sides per solve
-constexpr double kRounding = 1e-8; // of W
+constexpr std::size_t kPlaces = 32; // loaded in one solve, three columns each
+constexpr double kRounding = 1e-8;  // of W
 
 // The kernel at one skin vertex.
 struct Place {
@@ -90,32 +90,37 @@ void add_load(const LinearStatics& statics, const BoundaryTree& tree, const Plac
     columns.end_column();
 }
 
-// E W of every place in normal (3 i) and two tangents (3 i + 1, 3 i + 2).
-std::vector<double> kernel_compliances(const TetMesh& mesh, int order, double poisson,
-                                       std::span<const std::uint8_t> anchored,
-                                       std::span<const BedSample> bed, const BoundaryTree& tree,
-                                       std::span<const Place> places,
-                                       void (*progress)(double share)) {
+// E W of every place, world axes.
+std::vector<SymmetricTensor> kernel_compliances(const TetMesh& mesh, int order, double poisson,
+                                                std::span<const std::uint8_t> anchored,
+                                                std::span<const BedSample> bed,
+                                                const BoundaryTree& tree,
+                                                std::span<const Place> places,
+                                                void (*progress)(double share)) {
     const LinearStatics statics = make_linear_statics(mesh, order, poisson, anchored, bed);
     SparseFactor factor(statics.pattern);
     if (!factor.factor(statics.stiffness_m))
         throw std::invalid_argument("mesh term: nothing holds the body");
 
-    const std::size_t total = 3 * places.size();
-    std::vector<double> compliance(total);
-    for (std::size_t first = 0; first < total; first += kColumns) {
-        const std::size_t columns = std::min<std::size_t>(kColumns, total - first);
+    std::vector<SymmetricTensor> compliance(places.size());
+    for (std::size_t first = 0; first < places.size(); first += kPlaces) {
+        const std::size_t count = std::min(kPlaces, places.size() - first);
         SparseColumns load;
-        for (std::size_t c = 0; c < columns; ++c) {
-            const Place& place = places[(first + c) / 3];
-            const glm::dmat3 frame = tangent_frame(place.normal); // t1, t2, n
-            add_load(statics, tree, place, frame[static_cast<int>((first + c + 2) % 3)], load);
+        for (std::size_t c = 0; c < 3 * count; ++c) {
+            dvec3 direction{0.0};
+            direction[static_cast<int>(c % 3)] = 1.0;
+            add_load(statics, tree, places[first + c / 3], direction, load);
         }
-        factor.compliances(load, std::span(compliance).subspan(first, columns));
+        factor.compliances(load, std::span(compliance).subspan(first, count));
         if (progress)
-            progress(static_cast<double>(first + columns) / static_cast<double>(total));
+            progress(static_cast<double>(first + count) / static_cast<double>(places.size()));
     }
     return compliance;
+}
+
+double along(const SymmetricTensor& s, const dvec3& d) {
+    return s[0] * d.x * d.x + s[1] * d.y * d.y + s[2] * d.z * d.z +
+           2.0 * (s[3] * d.y * d.z + s[4] * d.x * d.z + s[5] * d.x * d.y);
 }
 
 // Quadratic minus linear is never negative but for rounding.
@@ -124,6 +129,29 @@ double excess(double quadratic, double linear, std::size_t vertex) {
         throw std::logic_error("mesh term: vertex " + std::to_string(vertex) +
                                " is stiffer in quadratic than in linear tetrahedra");
     return std::max(0.0, quadratic - linear);
+}
+
+// dW at one vertex in its three parts.
+void set_term(const Place& place, const SymmetricTensor& quadratic, const SymmetricTensor& linear,
+              ContactSurface& surface) {
+    const std::size_t v = place.vertex;
+    const dvec3& n = place.normal;
+    const auto across = [&](const SymmetricTensor& s) {
+        return 0.5 * (s[0] + s[1] + s[2] - along(s, n));
+    };
+    const double normal = excess(along(quadratic, n), along(linear, n), v);
+    const double tangential = excess(across(quadratic), across(linear), v);
+    surface.mesh_term_n_m[v] = normal;
+    surface.mesh_term_t_m[v] = tangential;
+    const double more = normal - tangential; // of n n^T
+    const SymmetricTensor plain{tangential + more * n.x * n.x,
+                                tangential + more * n.y * n.y,
+                                tangential + more * n.z * n.z,
+                                more * n.y * n.z,
+                                more * n.x * n.z,
+                                more * n.x * n.y};
+    for (std::size_t k = 0; k < plain.size(); ++k)
+        surface.mesh_lean_m[v][k] = quadratic[k] - linear[k] - plain[k];
 }
 
 void check_inputs(const TetMesh& mesh, std::span<const std::uint8_t> anchored,
@@ -168,12 +196,8 @@ void make_mesh_terms(const TetMesh& mesh, double poisson, std::span<const std::u
     const auto linear = kernel_compliances(mesh, 1, poisson, anchored, bed, tree, places, nullptr);
     const auto quadratic =
         kernel_compliances(mesh, 2, poisson, anchored, bed, tree, places, progress);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const std::size_t v = places[i].vertex;
-        const auto term = [&](int k) { return excess(quadratic[3 * i + k], linear[3 * i + k], v); };
-        surface.mesh_term_n_m[v] = term(0);
-        surface.mesh_term_t_m[v] = 0.5 * (term(1) + term(2));
-    }
+    for (std::size_t i = 0; i < places.size(); ++i)
+        set_term(places[i], quadratic[i], linear[i], surface);
 }
 
 } // namespace tissue

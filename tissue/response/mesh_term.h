@@ -10,7 +10,10 @@
 
 namespace tissue {
 
-/// Fills surface.mesh_term_n_m and _t_m; call after make_footprints, with the same options.
+/// Fills surface.mesh_term_n_m and _t_m, and _lean_m with what of dW is neither, so that
+///   E dW = term_n n n^T + term_t (1 - n n^T) + lean,  n the rest normal.
+/// Where an end bends, dW follows the bend and not the skin: lean is then as great as the others,
+/// and a tip that sticks to the skin feels it. Call after make_footprints, with the same options.
 /// Solved at every vertex of the skin, for near an edge nothing can be interpolated: the kernel
 /// shrinks there and the compliance rises within a tetrahedron. Tangential: mean of two tangents.
 /// `progress` (may be empty) is called with 0..1.

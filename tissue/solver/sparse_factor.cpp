@@ -17,7 +17,7 @@ namespace tissue {
 namespace {
 
 constexpr std::size_t kGroup = 12; // right-hand sides that are solved for at a time
-constexpr std::size_t kMany = 96;  // of those of which only the compliance is asked
+constexpr std::size_t kMany = 96;  // of those of which only the compliance is asked; by three
 
 // CHOLMOD asks OpenMP for four threads by name; at nesting depth 0 every region runs on the
 // caller alone. Per thread, hence before every use.
@@ -134,6 +134,19 @@ struct SparseFactor::Impl {
         }
     }
 
+    // L^-1 P of `count` columns from `first` on, one after the other.
+    std::span<const double> descend(const SparseColumns& b, std::size_t first, std::size_t count) {
+        const std::size_t n = order.size();
+        const std::span<double> y = std::span(ordered).first(count * n);
+        std::fill(y.begin(), y.end(), 0.0);
+        for (std::size_t j = 0; j < count; ++j) {
+            for (std::size_t k = b.start[first + j]; k < b.start[first + j + 1]; ++k)
+                y[j * n + static_cast<std::size_t>(place[b.unknown[k]])] += b.value[k];
+        }
+        descend_supernodes(blocks(), y, static_cast<int>(count), below);
+        return y;
+    }
+
     void permute(const SparsePattern& pattern) {
         const auto* elimination = static_cast<const int*>(factor->Perm);
         order.assign(elimination, elimination + pattern.size);
@@ -221,15 +234,31 @@ bool SparseFactor::compliances(const SparseColumns& b, std::span<double> out) {
     s.make_room(std::min(kMany, out.size()));
     for (std::size_t c = 0; c < out.size(); c += kMany) {
         const std::size_t count = std::min(kMany, out.size() - c);
-        const std::span<double> y = std::span(s.ordered).first(count * n);
-        std::fill(y.begin(), y.end(), 0.0);
-        for (std::size_t j = 0; j < count; ++j) {
-            for (std::size_t k = b.start[c + j]; k < b.start[c + j + 1]; ++k)
-                y[j * n + static_cast<std::size_t>(s.place[b.unknown[k]])] += b.value[k];
-        }
-        descend_supernodes(s.blocks(), y, static_cast<int>(count), s.below);
+        const double* y = s.descend(b, c, count).data();
         for (std::size_t j = 0; j < count; ++j)
-            out[c + j] = cblas_ddot(static_cast<int>(n), y.data() + j * n, 1, y.data() + j * n, 1);
+            out[c + j] = cblas_ddot(static_cast<int>(n), y + j * n, 1, y + j * n, 1);
+    }
+    return true;
+}
+
+bool SparseFactor::compliances(const SparseColumns& b, std::span<std::array<double, 6>> out) {
+    constexpr std::array<std::array<std::size_t, 2>, 6> kPair{
+        {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}};
+    constexpr std::size_t kPlaces = kMany / 3;
+    Impl& s = *impl_;
+    if (!s.usable || out.empty() || b.start.size() != 3 * out.size() + 1)
+        return false;
+    stay_on_this_thread();
+    const std::size_t n = s.order.size();
+    s.make_room(3 * std::min(kPlaces, out.size()));
+    for (std::size_t c = 0; c < out.size(); c += kPlaces) {
+        const std::size_t count = std::min(kPlaces, out.size() - c);
+        const double* y = s.descend(b, 3 * c, 3 * count).data();
+        for (std::size_t j = 0; j < count; ++j) {
+            for (std::size_t k = 0; k < kPair.size(); ++k)
+                out[c + j][k] = cblas_ddot(static_cast<int>(n), y + (3 * j + kPair[k][0]) * n, 1,
+                                           y + (3 * j + kPair[k][1]) * n, 1);
+        }
     }
     return true;
 }

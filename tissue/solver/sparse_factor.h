@@ -3,6 +3,7 @@
 // refactored as values change. The only file that includes CHOLMOD is the .cpp beside this one.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -59,6 +60,10 @@ class SparseFactor {
     /// out[c] = b_c^T A^-1 b_c, half of a solve. False, and `out` unchanged, without a usable
     /// factor. Columns that load the same part of a body side by side cost least. Allocates.
     bool compliances(const SparseColumns& b, std::span<double> out);
+
+    /// The same of columns 3 i, 3 i + 1, 3 i + 2 with each other: out[i] = {00, 11, 22, 12, 02,
+    /// 01}.
+    bool compliances(const SparseColumns& b, std::span<std::array<double, 6>> out);
 
     std::int64_t factor_entries() const noexcept; // stored, explicit zeros too
 
