@@ -9,7 +9,8 @@
 namespace bake {
 
 /// Least squares over the points of `skin` (area-weighted), by `rounds` of local averages of what
-/// is left. Points on creases of more than `crease_deg` do not move.
+/// is left. Points on creases of the skin of more than `crease_deg` do not move; where only the
+/// coarse surface bends as much, as it does around whatever is slender for it, there is none.
 void fit_to_skin(const Surface& skin, int rounds, double crease_deg, Surface& coarse);
 
 } // namespace bake

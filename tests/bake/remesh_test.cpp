@@ -139,3 +139,45 @@ TEST_CASE("fit: a thin rim comes back to where it was") {
     const bake::NearestOnSurface after(coarse);
     CHECK(bake::sampled_hausdorff_m(skin, after) < 0.6 * away);
 }
+
+TEST_CASE("fit: what is round is no crease where only the coarse triangles bend by as much") {
+    const auto skin = bake::remesh(bake_tests::sphere(0.03, 0.002), bake_tests::even(0.003),
+                                   {.crease_deg = 30.0});
+    const double exact = bake::volume_m3(skin);
+    auto coarse = bake::remesh(skin, bake_tests::even(0.028), {.crease_deg = 180.0});
+    int bends = 0;
+    const auto mesh = bake::make_half_edges(coarse);
+    for (const auto e : mesh.edges())
+        bends +=
+            std::abs(mesh.calc_dihedral_angle(mesh.halfedge_handle(e, 0))) > std::numbers::pi / 6
+                ? 1
+                : 0;
+    REQUIRE(bends > 10);
+    REQUIRE(bake::volume_m3(coarse) < 0.85 * exact);
+    bake::fit_to_skin(skin, 20, 30.0, coarse);
+    CHECK(bake::volume_m3(coarse) == bake_tests::near(exact, 0.03));
+}
+
+TEST_CASE("fit: points on a crease of the skin stay, and only they") {
+    // a ball cut in half: its rim is a crease, its dome is none
+    const glm::dvec3 reach{0.036};
+    const auto half = bake::remesh(
+        bake::polygonise([](const glm::dvec3& p) { return std::max(glm::length(p) - 0.03, -p.z); },
+                         -reach, reach, 0.001),
+        bake_tests::even(0.0025), {.crease_deg = 180.0});
+    const auto skin = bake::remesh(half, bake_tests::even(0.0025), {.crease_deg = 45.0});
+    const auto coarse = bake::remesh(skin, bake_tests::even(0.016), {.crease_deg = 45.0});
+    auto fitted = coarse;
+    bake::fit_to_skin(skin, 20, 45.0, fitted);
+    int stayed = 0, moved = 0;
+    for (std::size_t v = 0; v < coarse.point_m.size(); ++v) {
+        const double by_m = glm::length(fitted.point_m[v] - coarse.point_m[v]);
+        const glm::dvec3& p = coarse.point_m[v];
+        stayed += by_m == 0.0 ? 1 : 0;
+        if (p.z > 0.01) // well above the rim
+            CHECK(by_m > 0.0);
+        moved += by_m > 0.0 ? 1 : 0;
+    }
+    CHECK(stayed >= 6);
+    CHECK(moved > 5);
+}
