@@ -108,15 +108,20 @@ struct SparseFactor::Impl {
                 inverse.data()};
     }
 
-    void make_room(std::size_t columns) {
+    // Rows below the tallest block, or a tile if that is more.
+    std::size_t most_below() const noexcept {
         const SupernodeView f = blocks();
-        int most_below = kTile;
+        int most = kTile;
         for (int s = 0; s < f.blocks; ++s)
-            most_below = std::max(most_below, f.row_start[s + 1] - f.row_start[s] -
-                                                  (f.first[s + 1] - f.first[s]));
+            most =
+                std::max(most, f.row_start[s + 1] - f.row_start[s] - (f.first[s + 1] - f.first[s]));
+        return static_cast<std::size_t>(most);
+    }
+
+    void make_room() {
         inverse.resize(kTile * order.size());
-        ordered.resize(std::max(ordered.size(), columns * order.size()));
-        below.resize(std::max(below.size(), columns * static_cast<std::size_t>(most_below)));
+        ordered.resize(kGroup * order.size());
+        below.resize(kGroup * most_below());
     }
 
     // A X = B in place for at most kGroup columns.
@@ -132,19 +137,6 @@ struct SparseFactor::Impl {
             for (std::size_t k = 0; k < n; ++k)
                 b[c * n + order[k]] = ordered[c * n + k];
         }
-    }
-
-    // L^-1 P of `count` columns from `first` on, one after the other.
-    std::span<const double> descend(const SparseColumns& b, std::size_t first, std::size_t count) {
-        const std::size_t n = order.size();
-        const std::span<double> y = std::span(ordered).first(count * n);
-        std::fill(y.begin(), y.end(), 0.0);
-        for (std::size_t j = 0; j < count; ++j) {
-            for (std::size_t k = b.start[first + j]; k < b.start[first + j + 1]; ++k)
-                y[j * n + static_cast<std::size_t>(place[b.unknown[k]])] += b.value[k];
-        }
-        descend_supernodes(blocks(), y, static_cast<int>(count), below);
-        return y;
     }
 
     void permute(const SparsePattern& pattern) {
@@ -187,7 +179,7 @@ SparseFactor::SparseFactor(const SparsePattern& pattern) : impl_(std::make_uniqu
     impl_->permute(pattern);
     impl_->describe(impl_->column_start, impl_->row);
     impl_->analyze(CHOLMOD_NATURAL);
-    impl_->make_room(kGroup);
+    impl_->make_room();
     impl_->matrix.xtype = CHOLMOD_REAL;
     impl_->matrix.x = impl_->value.data();
 }
@@ -225,35 +217,56 @@ bool SparseFactor::solve(std::span<double> b, int columns) noexcept {
     return true;
 }
 
-bool SparseFactor::compliances(const SparseColumns& b, std::span<double> out) {
-    Impl& s = *impl_;
+// L^-1 P of columns, kept apart from the factor so that each thread has its own.
+struct SparseFactor::Descent {
+    const Impl& of;
+    std::vector<double> y, below;
+
+    Descent(const Impl& impl, std::size_t columns)
+        : of(impl), y(columns * impl.order.size()), below(columns * impl.most_below()) {
+        stay_on_this_thread();
+    }
+    // Of `count` columns from `first` on, one after the other.
+    const double* operator()(const SparseColumns& b, std::size_t first, std::size_t count) {
+        const std::size_t n = of.order.size();
+        std::fill(y.begin(), y.end(), 0.0);
+        for (std::size_t j = 0; j < count; ++j) {
+            for (std::size_t k = b.start[first + j]; k < b.start[first + j + 1]; ++k)
+                y[j * n + static_cast<std::size_t>(of.place[b.unknown[k]])] += b.value[k];
+        }
+        descend_supernodes(of.blocks(), std::span(y).first(count * n), static_cast<int>(count),
+                           below);
+        return y.data();
+    }
+};
+
+bool SparseFactor::compliances(const SparseColumns& b, std::span<double> out) const {
+    const Impl& s = *impl_;
     if (!s.usable || out.empty() || b.start.size() != out.size() + 1)
         return false;
-    stay_on_this_thread();
     const std::size_t n = s.order.size();
-    s.make_room(std::min(kMany, out.size()));
+    Descent descend(s, std::min(kMany, out.size()));
     for (std::size_t c = 0; c < out.size(); c += kMany) {
         const std::size_t count = std::min(kMany, out.size() - c);
-        const double* y = s.descend(b, c, count).data();
+        const double* y = descend(b, c, count);
         for (std::size_t j = 0; j < count; ++j)
             out[c + j] = cblas_ddot(static_cast<int>(n), y + j * n, 1, y + j * n, 1);
     }
     return true;
 }
 
-bool SparseFactor::compliances(const SparseColumns& b, std::span<std::array<double, 6>> out) {
+bool SparseFactor::compliances(const SparseColumns& b, std::span<std::array<double, 6>> out) const {
     constexpr std::array<std::array<std::size_t, 2>, 6> kPair{
         {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}};
     constexpr std::size_t kPlaces = kMany / 3;
-    Impl& s = *impl_;
+    const Impl& s = *impl_;
     if (!s.usable || out.empty() || b.start.size() != 3 * out.size() + 1)
         return false;
-    stay_on_this_thread();
     const std::size_t n = s.order.size();
-    s.make_room(3 * std::min(kPlaces, out.size()));
+    Descent descend(s, 3 * std::min(kPlaces, out.size()));
     for (std::size_t c = 0; c < out.size(); c += kPlaces) {
         const std::size_t count = std::min(kPlaces, out.size() - c);
-        const double* y = s.descend(b, 3 * c, 3 * count).data();
+        const double* y = descend(b, 3 * c, 3 * count);
         for (std::size_t j = 0; j < count; ++j) {
             for (std::size_t k = 0; k < kPair.size(); ++k)
                 out[c + j][k] = cblas_ddot(static_cast<int>(n), y + (3 * j + kPair[k][0]) * n, 1,

@@ -59,11 +59,12 @@ class SparseFactor {
 
     /// out[c] = b_c^T A^-1 b_c, half of a solve. False, and `out` unchanged, without a usable
     /// factor. Columns that load the same part of a body side by side cost least. Allocates.
-    bool compliances(const SparseColumns& b, std::span<double> out);
+    /// Several threads may ask one object at once while none factors or solves.
+    bool compliances(const SparseColumns& b, std::span<double> out) const;
 
-    /// The same of columns 3 i, 3 i + 1, 3 i + 2 with each other: out[i] = {00, 11, 22, 12, 02,
-    /// 01}.
-    bool compliances(const SparseColumns& b, std::span<std::array<double, 6>> out);
+    /// The same of columns 3 i, 3 i + 1, 3 i + 2 with each other:
+    /// out[i] = {00, 11, 22, 12, 02, 01}.
+    bool compliances(const SparseColumns& b, std::span<std::array<double, 6>> out) const;
 
     std::int64_t factor_entries() const noexcept; // stored, explicit zeros too
 
@@ -73,6 +74,7 @@ class SparseFactor {
 
   private:
     struct Impl;
+    struct Descent;
     std::unique_ptr<Impl> impl_;
 };
 
