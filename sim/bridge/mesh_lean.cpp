@@ -22,16 +22,18 @@ dmat3 matrix(const SymmetricTensor& s) noexcept {
     return {{s[0], s[5], s[4]}, {s[5], s[1], s[3]}, {s[4], s[3], s[2]}};
 }
 
-// Least eigenvalue of a symmetric matrix without a trace (Smith 1961).
+// Least eigenvalue of a symmetric matrix (Smith 1961).
 double least_eigenvalue(const dmat3& m) {
+    const double mean = (m[0][0] + m[1][1] + m[2][2]) / 3.0;
+    const dmat3 rest = m - dmat3{mean};
     double square = 0.0;
     for (int k = 0; k < 3; ++k)
-        square += glm::dot(m[k], m[k]);
+        square += glm::dot(rest[k], rest[k]);
     const double p = std::sqrt(square / 6.0);
-    if (!(p > 0.0))
-        return 0.0;
-    const double turn = std::acos(std::clamp(glm::determinant(m / p) / 2.0, -1.0, 1.0)) / 3.0;
-    return 2.0 * p * std::cos(turn + 2.0 * std::numbers::pi / 3.0);
+    if (p == 0.0)
+        return mean;
+    const double turn = std::acos(std::clamp(glm::determinant(rest / p) / 2.0, -1.0, 1.0)) / 3.0;
+    return mean + 2.0 * p * std::cos(turn + 2.0 * std::numbers::pi / 3.0);
 }
 
 // The law's compliances at the greatest force that its table has, least of all tools.
@@ -62,11 +64,12 @@ double bearable_share(const SymmetricTensor& lean, const dvec3& normal, const Le
     const double n = least.normal_mpn - kLeast_mpn, t = least.tangential_mpn - kLeast_mpn;
     if (!(n > 0.0) || !(t > 0.0))
         return 0.0;
-    // D^-1/2 = 1/sqrt t + (1/sqrt n - 1/sqrt t) n n^T; lean has no part along n n^T, nor a mean
-    // across, so that what it becomes has no trace
+    // D^-1/2 = 1/sqrt t + (1/sqrt n - 1/sqrt t) n n^T
     const dmat3 root = dmat3{1.0 / std::sqrt(t)} + (1.0 / std::sqrt(n) - 1.0 / std::sqrt(t)) *
                                                        glm::outerProduct(normal, normal);
     const double lowest = least_eigenvalue(root * matrix(lean) * root);
+    if (!std::isfinite(lowest))
+        return 0.0;
     return lowest < -1.0 ? -1.0 / lowest : 1.0;
 }
 
@@ -85,7 +88,7 @@ std::vector<SymmetricTensor> rest_lean(const Body& body) {
             s /= body.material.young_pa;
         const double share = bearable_share(lean_mpn[v], normal[v], least_law(body, v));
         for (double& s : lean_mpn[v])
-            s *= share;
+            s = share > 0.0 ? share * s : 0.0;
     }
     return lean_mpn;
 }

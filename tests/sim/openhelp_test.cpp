@@ -5,9 +5,14 @@
 // label slow.
 #include "tests/sim/command_fixture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
 #include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <map>
+#include <sstream>
 #include <unistd.h>
 
 using namespace command_tests;
@@ -53,6 +58,40 @@ class Abdomen {
 
     fs::path folder_;
 };
+
+/// Places in a record of presses: a line about each, then three numbers a depth.
+int places_in(const fs::path& record) {
+    std::ifstream in(record);
+    int places = 0;
+    for (std::string line; std::getline(in, line);) {
+        const std::ptrdiff_t words = std::count(line.begin(), line.end(), ' ');
+        places += line.front() != '#' && words > 4 ? 1 : 0;
+    }
+    return places;
+}
+
+/// Rows of a CSV under '#' lines, by the names of its columns.
+std::vector<std::map<std::string, std::string>> rows_of(const fs::path& csv) {
+    std::ifstream in(csv);
+    std::vector<std::string> name;
+    std::vector<std::map<std::string, std::string>> rows;
+    for (std::string line; std::getline(in, line);) {
+        if (line.empty() || line.front() == '#')
+            continue;
+        std::istringstream cells(line);
+        std::map<std::string, std::string> row;
+        std::size_t column = 0;
+        for (std::string cell; std::getline(cells, cell, ','); ++column) {
+            if (rows.empty() && name.size() == column)
+                name.push_back(cell);
+            row[name.at(column)] = cell;
+        }
+        rows.push_back(std::move(row));
+    }
+    if (!rows.empty())
+        rows.erase(rows.begin()); // the names
+    return rows;
+}
 
 const Abdomen& abdomen() {
     static const Abdomen made;
@@ -102,4 +141,46 @@ TEST_CASE("openhelp: three tools press on the liver in real time, and the attemp
     CHECK(ran["rig"]["tick_us"]["p9999"].get<double>() <= 500.0);
     const auto again = json_of("replay '" + log + "' 1 --scene '" + abdomen().path() + "' --json");
     CHECK(again["log_sha256"] == ran["log_sha256"]);
+}
+
+// Forces of the reference solver, recorded: tests/data/presses says of each organ which mesh, hold
+// and seed it pressed, by `trocar study organ --reference`. Where it feels less than 35 mN the gate
+// for force is these 35 mN, and what is not felt has neither a stiffness nor a direction.
+TEST_CASE("openhelp: tips press liver, stomach, spleen and kidney as the reference solver does" *
+          doctest::test_suite("slow")) {
+    if (missing())
+        return;
+    for (const std::string organ : {"liver", "stomach", "spleen", "kidney_left"}) {
+        CAPTURE(organ);
+        const fs::path record =
+            fs::path(TROCAR_SOURCE) / "tests/data/presses/openhelp" / (organ + ".presses");
+        const fs::path folder = fs::path(abdomen().path()) / ("pressed_" + organ);
+        const std::string material = organ.substr(0, organ.find('_'));
+        const Answer import =
+            trocar("import '" + (kSurfaces / (organ + ".stl")).string() +
+                   "' --unit mm --material " + material + " --out '" + folder.string() + "'");
+        CAPTURE(import.text);
+        REQUIRE(import.exit_code == 0);
+        fs::copy_file(record, folder / "presses");
+        const int places = places_in(record);
+        REQUIRE(places > 0);
+        const auto study = json_of(
+            fmt::format("study organ '{0}/{1}.organ' --reference --friction inf --points {2} "
+                        "--hold-toward 0 0 -1 --record '{0}/presses' --out '{0}/out'",
+                        folder.string(), organ, places));
+        REQUIRE(places_in(folder / "presses") == places); // nothing had to be pressed anew
+        CHECK(study["places_not_settled"] == 0);
+        CHECK(study["inside"]["a1"] == study["rows_with_reference"]);
+        int felt = 0;
+        for (auto& row : rows_of(folder / "out/reference.csv")) {
+            if (row["reference_n"].empty() || std::stod(row["reference_n"]) < 35e-3)
+                continue;
+            CAPTURE(row["place"]);
+            CAPTURE(row["depth_mm"]);
+            CHECK(row["a2"] == "1");
+            CHECK(row["a3"] == "1");
+            ++felt;
+        }
+        MESSAGE(organ, ": ", places, " places, ", felt, " depths that are felt");
+    }
 }
