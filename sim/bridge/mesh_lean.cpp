@@ -16,7 +16,7 @@ using glm::dmat3;
 using glm::dvec3;
 using tissue::SymmetricTensor;
 
-constexpr double kLeast_mpn = 5e-3; // 200 N/m: softer than any device's coupling spring
+constexpr double kLeast_mpn = 5e-3; // 200 N/m: a quarter of the usual coupling spring
 
 dmat3 matrix(const SymmetricTensor& s) noexcept {
     return {{s[0], s[5], s[4]}, {s[5], s[1], s[3]}, {s[4], s[3], s[2]}};

@@ -3,7 +3,8 @@
 // owe where an end bends is along the bend, which leans against the skin. It acts between tool and
 // skin as the local law does, but couples its directions, so it is added to a tool's own
 // compliance, in both loops. Used by the tissue loop.
-//   law + lean >= kLeast_mpn in every direction, for every force that a tip can have
+//   law + lean >= 5 mm/N in every direction of the skin at rest, for every force in the law's
+//   table; where the law alone is stiffer than that, nothing leans
 #pragma once
 
 #include "sim/bridge/body.h"

@@ -14,7 +14,6 @@
 #include <random>
 
 using glm::dmat2;
-using glm::dmat2x3;
 using glm::dmat3;
 using glm::dvec2;
 using glm::dvec3;
