@@ -16,6 +16,7 @@ namespace {
 using glm::dvec3;
 
 constexpr double kTolerance = 1e-5; // of Newton's relative residual: forces to 1e-4
+constexpr int kProducts = 30;       // cost about as much as a factor of 100 000 unknowns
 constexpr double kGrowth = 1.0;     // of edges per distance
 
 std::vector<std::uint8_t> held_flags(const tissue::QuadraticMesh& mesh,
@@ -62,7 +63,8 @@ ReferencePress press_reference(const tissue::BakedOrgan& organ, const tissue::Ma
                         .depth_m = o.depth_m,
                         .friction = o.friction,
                         .step_m = o.step_share * o.radius_m};
-    press.newton = {.tolerance = kTolerance, .max_iterations = 20, .max_halvings = 0};
+    press.newton = {
+        .tolerance = kTolerance, .max_iterations = 20, .max_halvings = 0, .products = kProducts};
     press.step_halvings = 2;
     const tissue::RefinedMesh fine =
         tissue::refined(organ.mesh, organ.anchored, organ.bed, press.place_m,

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <doctest/doctest.h>
+#include <glm/geometric.hpp>
 #include <limits>
 
 namespace {
@@ -138,6 +139,30 @@ TEST_CASE("indenter: halving steps and stiffening the penalty move the force by 
     const double fine_n = q.press(p).point.at(0).force_n.z;
     // friction, one step late, is worth 3 % of the force here in all
     CHECK(whole_n == doctest::Approx(fine_n).epsilon(0.02).scale(0));
+}
+
+TEST_CASE("indenter: old factors under conjugate gradients lead to the same equilibria") {
+    Quarter q(dvec3(10 * kRadius_m), {2, 2, 2},
+              {.edge_m = 0.8 * kRadius_m, .core_m = 0.8 * kRadius_m, .growth = 1.0}, 6e3, 0.45,
+              tissue::Law::neo_hooke);
+    tissue::Press p{.radius_m = kRadius_m,
+                    .depth_m = {0.5 * kRadius_m, kRadius_m, 2.0 * kRadius_m},
+                    .friction = std::numeric_limits<double>::infinity()};
+    const auto own = q.press(p);
+    REQUIRE(own.point.size() == 3);
+    CHECK(own.factors == own.iterations);
+    // 30 mostly suffice; one never does, and every tangent is factored after all
+    for (const int products : {30, 1}) {
+        CAPTURE(products);
+        p.newton.products = products;
+        const auto old = q.press(p);
+        REQUIRE(old.point.size() == 3);
+        CHECK((products == 1 ? old.factors == old.iterations : 2 * old.factors < old.iterations));
+        CHECK(old.iterations < 1.2 * own.iterations);
+        for (std::size_t i = 0; i < 3; ++i)
+            CHECK(glm::length(old.point[i].force_n - own.point[i].force_n) <
+                  1e-5 * glm::length(own.point[i].force_n));
+    }
 }
 
 TEST_CASE("indenter: contact's slope and tangent are those of its energy") {

@@ -100,6 +100,7 @@ PressReport press(const ReferenceModel& model, const Press& p, ReferenceSystem& 
         std::vector<dvec3> moved = foreseen(model, before, now, taken_m / last_step_m);
         const NewtonReport newton = find_least(model, potential, {}, p.newton, system, moved);
         report.iterations += newton.iterations;
+        report.factors += newton.factors;
         if (!(newton.reached == 1.0)) {
             report.failed_at_m = depth_m;
             report.failed = newton;

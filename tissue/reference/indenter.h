@@ -33,11 +33,11 @@ struct PressPoint {
 };
 
 struct PressReport {
-    std::vector<PressPoint> point; // one for each depth that was reached
-    double reached_m = 0.0;        // the last depth with an equilibrium
-    int iterations = 0;            // linear solves
-    double failed_at_m = 0.0;      // the depth tried last without an equilibrium; 0: none
-    NewtonReport failed{};         // what Newton said there
+    std::vector<PressPoint> point;   // one for each depth that was reached
+    double reached_m = 0.0;          // the last depth with an equilibrium
+    int iterations = 0, factors = 0; // linear solves, and with a factor of their own of these
+    double failed_at_m = 0.0;        // the depth tried last without an equilibrium; 0: none
+    NewtonReport failed{};           // what Newton said there
 };
 
 /// From `state` at rest; ends at the last equilibrium. Fewer points than depths: no equilibrium was

@@ -91,10 +91,14 @@ struct NewtonOptions {
     double tolerance = 1e-10; // of the relative residual
     int max_iterations = 40;  // in each part of the load
     int max_halvings = 10;    // of the load, before giving up
+    // with the last factor, wherever it came from, before a new one is made; 0: one in each
+    // iteration, which also tells whether the tangent is positive definite everywhere
+    int products = 0;
 };
 
 struct NewtonReport {
     int iterations = 0;   // linear solves, all parts of the load together, failed ones too
+    int factors = 0;      // of these, with a factor of their own
     int projected = 0;    // of these, with a projected tangent
     int parts = 0;        // in which the load was applied
     double reached = 0.0; // share of the load: 1 if all of it was

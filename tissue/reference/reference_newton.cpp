@@ -4,6 +4,7 @@
 #include "tissue/reference/reference_newton.h"
 
 #include "tissue/reference/reference_element.h"
+#include "tissue/reference/reference_tangent.h"
 #include "tissue/solver/plain_vectors.h"
 
 #include <algorithm>
@@ -25,7 +26,8 @@ struct Search {
     std::vector<dvec3> start_m, now_m, trial_m;
     double volume_m3 = 0.0;
     std::vector<double> force_n, way_m, inertia_n, contact_n, residual_n, step_m, product_n;
-    std::vector<double> unknown; // per unknown
+    std::vector<double> unknown, unknown_step; // per unknown
+    bool factor_helps = true;                  // the last old factor was near enough
     NewtonReport report;
 
     Search(const ReferenceModel& m, ReferenceSystem& s, const NewtonOptions& o,
@@ -39,6 +41,7 @@ struct Search {
         for (auto* v : {&force_n, &way_m, &inertia_n, &contact_n, &residual_n, &step_m, &product_n})
             v->assign(m.unknown.size(), 0.0);
         unknown.assign(static_cast<std::size_t>(m.unknowns), 0.0);
+        unknown_step = unknown;
     }
 };
 
@@ -93,33 +96,72 @@ double relative_residual(Search& s) noexcept {
     return size == 0.0 ? 0.0 : std::sqrt(sum) / size; // not a number stays so
 }
 
-// K + B of the unknowns; with projected tangents if it is not positive definite otherwise.
+// K + B of the unknowns.
+void gather_tangent(Search& s) noexcept {
+    for (std::size_t k = 0; k < s.system.matrix.size(); ++k) {
+        const std::int32_t from = s.model.free_source[k];
+        s.system.matrix[k] =
+            s.system.stiffness[from] + (s.inertia_npm.empty() ? 0.0 : s.inertia_npm[from]);
+    }
+}
+
+// Newly, and with projected tangents if it is not positive definite otherwise.
 bool factor_tangent(Search& s) {
-    const auto attempt = [&] {
-        for (std::size_t k = 0; k < s.system.matrix.size(); ++k) {
-            const std::int32_t from = s.model.free_source[k];
-            s.system.matrix[k] =
-                s.system.stiffness[from] + (s.inertia_npm.empty() ? 0.0 : s.inertia_npm[from]);
-        }
-        return s.system.factor.factor(s.system.matrix);
-    };
-    ++s.report.iterations;
-    if (attempt())
+    ++s.report.factors;
+    gather_tangent(s);
+    if (s.system.factor.factor(s.system.matrix))
         return true;
     ++s.report.projected;
     linearize_now(s, true);
-    return attempt();
+    gather_tangent(s);
+    return s.system.factor.factor(s.system.matrix);
 }
 
-// step_m on the unknowns = (K + B)^-1 of residual_n there; 0 on the held components.
-void solve_step(Search& s) noexcept {
+void apply_factor(Search& s) noexcept {
+    s.factor_helps = true;
+    s.unknown_step = s.unknown;
+    s.system.factor.solve(s.unknown_step, 1);
+}
+
+// Exactly or, where the options allow it and it pays, by the last factor.
+bool solve_tangent(Search& s) {
+    constexpr double kTolerance = 1e-3; // Newton gains three digits with each
+    const int most = s.options.products;
+    if (most > 0 && s.factor_helps) {
+        gather_tangent(s);
+        const int products =
+            solve_with_old_factor(s.model, s.system, most, kTolerance, s.unknown, s.unknown_step);
+        s.factor_helps = products > 0 && 2 * products <= most;
+        if (products > 0)
+            return true;
+    }
+    if (!factor_tangent(s))
+        return false;
+    apply_factor(s);
+    return true;
+}
+
+void take_right(Search& s) noexcept {
+    ++s.report.iterations;
     for (std::size_t i = 0; i < s.residual_n.size(); ++i) {
         if (s.model.unknown[i] >= 0)
             s.unknown[s.model.unknown[i]] = s.residual_n[i];
     }
-    s.system.factor.solve(s.unknown, 1);
+}
+
+void give_step(Search& s) noexcept {
     for (std::size_t i = 0; i < s.step_m.size(); ++i)
-        s.step_m[i] = s.model.unknown[i] >= 0 ? s.unknown[s.model.unknown[i]] : 0.0;
+        s.step_m[i] = s.model.unknown[i] >= 0 ? s.unknown_step[s.model.unknown[i]] : 0.0;
+}
+
+// step_m on the unknowns = (K + B)^-1 of residual_n there; 0 on the held components. False if
+// K + B is not positive definite even with projected tangents.
+bool solve_step(Search& s) {
+    take_right(s);
+    if (!solve_tangent(s))
+        return false;
+    give_step(s);
+    return true;
 }
 
 void look_at(Search& s, double share) noexcept {
@@ -171,7 +213,9 @@ bool carry_held(Search& s, std::span<const dvec3> held_m) {
     }
     for (double& r : s.residual_n)
         r = -r;
-    solve_step(s);
+    take_right(s);
+    apply_factor(s);
+    give_step(s);
     for (std::size_t i = 0; i < way_m.size(); ++i)
         s.step_m[i] += way_m[i];
     look_at(s, 1.0);
@@ -194,9 +238,8 @@ bool converge(Search& s) {
             (descent == Descent::within_rounding && residual > kProgress * last)) {
             return true;
         }
-        if (i >= s.options.max_iterations || !factor_tangent(s))
+        if (i >= s.options.max_iterations || !solve_step(s))
             return false;
-        solve_step(s);
         descent = go_down(s);
         if (descent == Descent::none)
             return false;
