@@ -4,6 +4,7 @@
 #include "sim/session/rehold.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -16,11 +17,15 @@ using glm::dvec3;
 OrganPointer held_organ(OrganPointer organ, const HoldSide& hold) {
     if (hold.toward == dvec3{0.0})
         return organ;
+    const dvec3 toward = glm::normalize(hold.toward);
+    if (!std::isfinite(glm::length(toward))) {
+        throw std::invalid_argument(fmt::format("--hold-toward {} {} {}: accepted: three numbers",
+                                                hold.toward.x, hold.toward.y, hold.toward.z));
+    }
     if (!(hold.share > 0.0 && hold.share <= 1.0)) {
         throw std::invalid_argument(
-            fmt::format("hold share = {}: must be above 0 and at most 1", hold.share));
+            fmt::format("--hold-share {}: accepted: above 0, to 1", hold.share));
     }
-    const dvec3 toward = glm::normalize(hold.toward);
     double low = std::numeric_limits<double>::max(), high = -low;
     for (const dvec3& x : organ->surface.rest_m) { // the same for all meshes of an organ
         low = std::min(low, glm::dot(x, toward));

@@ -78,6 +78,9 @@ std::string chart(const TradeoffOptions& o, const TradeoffStudy& study, const ch
         c.series.push_back(s);
     }
     XySeries stored{"quadratic, matrix factored anew", 0, XyMark::disc, true, true, {}};
+    for (const XySeries& s : c.series)
+        if (s.name == "quadratic")
+            stored.colour = s.colour, stored.mark = s.mark;
     for (const TradeoffRow& r : study.row)
         if (r.factor_ms > 0.0)
             stored.point.emplace_back(r.factor_ms + r.solve_ms, r.*error);

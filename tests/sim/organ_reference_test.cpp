@@ -5,6 +5,7 @@
 #include "sim/study/organ_study.h"
 #include "sim/study/reference_record.h"
 
+#include <cmath>
 #include <doctest/doctest.h>
 #include <filesystem>
 #include <fstream>
@@ -121,7 +122,10 @@ TEST_CASE("organ reference: what cannot be pressed is refused with the value") {
     CHECK_THROWS_WITH(sim::run_organ_reference(o, {}), doctest::Contains("tip radius 500"));
     o = block();
     o.hold = {.toward = {0, 0, -1}, .share = 1.5};
-    CHECK_THROWS_WITH(sim::run_organ_reference(o, {}), doctest::Contains("hold share = 1.5"));
+    CHECK_THROWS_WITH(sim::run_organ_reference(o, {}), doctest::Contains("--hold-share 1.5"));
+    o = block();
+    o.hold = {.toward = {0, std::nan(""), -1}};
+    CHECK_THROWS_WITH(sim::run_organ_reference(o, {}), doctest::Contains("--hold-toward 0 nan -1"));
     o = block();
     o.press.depth_m = {};
     CHECK_THROWS_WITH(sim::run_organ_reference(o, {}), doctest::Contains("at least one depth"));
