@@ -147,8 +147,8 @@ TEST_CASE("openhelp: three tools press on the liver in real time, and the attemp
 // Forces of the reference solver, recorded by `trocar study organ --reference`: the first line in
 // each file of tests/data/presses/openhelp says what was pressed. The tip of the reference meets
 // its mesh's facets, of which the usual mesh has five around a tail, and not the skin: hence it has
-// a mesh of half the edge, from the same surface. What is below 35 mN, the gate for small forces,
-// is not felt, and has neither a stiffness nor a direction.
+// a mesh of half the edge, from the same surface, but on the liver. What is below 35 mN, the gate
+// for small forces, is not felt, and has neither a stiffness nor a direction.
 TEST_CASE("openhelp: tips press liver, stomach, spleen and kidney as the reference solver does" *
           doctest::test_suite("slow")) {
     if (missing())
