@@ -92,9 +92,12 @@ Contact make_contact(const ContactRow& row, const ContactMemory& memory) noexcep
         c.lag_m.z = 0.0;
         return c;
     }
-    if (memory.touching && row.friction > 0.0) {
+    if (row.friction > 0.0 && memory.touching) {
         c.before_n = tangential(memory.friction_n, row.normal) * c.frame;
         c.lag_m = tangential(memory.lag_m, row.normal) * c.frame;
+    } else if (row.friction > 0.0) {
+        // a tip over a facet is not quite over its point along the smooth normal: no reason to pull
+        c.lag_m = c.offset_m;
     }
     c.before_n.z = c.lag_m.z = 0.0;
     return c;
@@ -202,9 +205,11 @@ glm::dvec3 settle(const ContactRow& row, const glm::dmat3& own, const Contact& c
     const double soft = tangential_compliance(row.law, c.x);
     glm::dvec2 lag_m = glm::dvec2{c.lag_m} - soft * glm::dvec2{c.force_n - c.before_n};
     const double length_m = glm::length(lag_m);
-    const bool too_long = length_m > row.tip_radius_m;
+    // the skin that a tip holds is under it, drawn in from farther out the deeper it is
+    const double most_m = row.tip_radius_m + law_at(row.law, c.x).depth_m;
+    const bool too_long = length_m > most_m;
     if (too_long)
-        lag_m *= row.tip_radius_m / length_m;
+        lag_m *= most_m / length_m;
     memory.friction_n = c.frame * glm::dvec3{glm::dvec2{c.force_n}, 0.0};
     memory.lag_m = c.frame * glm::dvec3{lag_m, 0.0};
     const bool sticks = c.multiplier == 0.0 && !too_long;

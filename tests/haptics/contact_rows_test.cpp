@@ -129,9 +129,10 @@ std::array<glm::dvec3, kTools> bipotential(const ContactProblem& p, const Memory
             const double normal_mpn = std::max(r.law.normal_mpn, r.law.floor_mpn);
             const double tangent_mpn = std::max(r.law.tangential_mpn, r.law.floor_mpn);
             const glm::dvec3 d = offset_m(p, F, i);
-            const glm::dvec3 before = memory[i].touching && r.friction > 0.0
-                                          ? tangent_mpn * memory[i].friction_n + memory[i].lag_m
-                                          : glm::dvec3{0.0};
+            glm::dvec3 before{0.0};
+            if (r.friction > 0.0)
+                before = memory[i].touching ? tangent_mpn * memory[i].friction_n + memory[i].lag_m
+                                            : across(r.tip_m - r.surface_free_m, r.normal);
             const glm::dvec3 slip = across(d + tangent_mpn * F[i] - before, r.normal);
             const double gap =
                 glm::dot(d, r.normal) - r.tip_radius_m + normal_mpn * glm::dot(F[i], r.normal);
@@ -196,7 +197,8 @@ TEST_CASE("contact rows: the solution satisfies Signorini and Coulomb on the tis
             // what is not spring is slip, and slip opposes friction at the limit
             const bool was = before[i].touching;
             const glm::dvec3 F0 = was ? before[i].friction_n : glm::dvec3{0.0};
-            const glm::dvec3 lag0 = was ? before[i].lag_m : glm::dvec3{0.0};
+            const glm::dvec3 lag0 =
+                was ? before[i].lag_m : across(r.tip_m - r.surface_free_m, r.normal);
             const glm::dvec3 slip =
                 across(d - lag0 + haptics::tangential_compliance(r.law, x) * (Ft - F0), r.normal);
             CHECK(glm::dot(slip, Ft) <= 1e-13);
@@ -300,16 +302,35 @@ TEST_CASE("contact rows: a stuck tool does not creep in ten seconds of trembling
     CHECK(memory[0].touching);
 }
 
+TEST_CASE("contact rows: a first touch beside its point along the normal does not pull") {
+    // as over a facet, whose nearest point is not on the smooth normal
+    const LocalLaw law{.tangential_mpn = 1e-3, .floor_mpn = 1e-3};
+    Memory memory;
+    const glm::dvec3 beside{2e-4, -1e-4, 0};
+    const ContactSolution s =
+        haptics::solve_contact(one_tool(law, 0.3, depth_tip(1e-3) + beside, 0.0), memory);
+    CHECK(s.force_n[0].z == doctest::Approx(1.0).scale(0.0));
+    CHECK(glm::length(across(s.force_n[0], {0, 0, 1})) < 1e-12);
+    CHECK(s.slip_m[0] == glm::dvec3{0.0});
+    // and from there on it sticks: 0.1 mm at 1 mm/N
+    const glm::dvec3 moved = beside + glm::dvec3{1e-4, 0, 0};
+    const ContactSolution held =
+        haptics::solve_contact(one_tool(law, 0.3, depth_tip(1e-3) + moved, 0.0), memory);
+    CHECK(held.force_n[0].x == doctest::Approx(-0.1).scale(0.0));
+    CHECK(std::abs(held.force_n[0].y) < 1e-12);
+}
+
 TEST_CASE("contact rows: unloading straight up slides when the limit falls below the friction") {
     const LocalLaw law{.tangential_mpn = 1e-3, .floor_mpn = 1e-3};
     Memory memory;
-    const auto press = [&](double depth_m) {
+    const auto press = [&](double depth_m, double along_m) {
         const ContactProblem p =
-            one_tool(law, 0.3, depth_tip(depth_m) + glm::dvec3{2e-4, 0, 0}, 0.0);
+            one_tool(law, 0.3, depth_tip(depth_m) + glm::dvec3{along_m, 0, 0}, 0.0);
         return haptics::solve_contact(p, memory);
     };
-    CHECK(press(1e-3).slip_m[0].x == 0.0); // 0.2 N of friction, limit 0.3 N
-    const ContactSolution s = press(5e-4);
+    press(1e-3, 0.0);
+    CHECK(press(1e-3, 2e-4).slip_m[0].x == 0.0); // 0.2 N of friction, limit 0.3 N
+    const ContactSolution s = press(5e-4, 2e-4);
     CHECK(-s.force_n[0].x == doctest::Approx(0.3 * 0.5).scale(0.0));
     CHECK(s.slip_m[0].x == doctest::Approx(0.05 * 1e-3).scale(0.0)); // the spring gives 0.05 N back
 }
@@ -339,16 +360,17 @@ TEST_CASE("contact rows: the slip predicted at unchanged pressure is the slip of
     CHECK(glm::length(predicted - s.slip_m[0]) < 1e-12);
 }
 
-TEST_CASE("contact rows: the lag never grows beyond the tip") {
+TEST_CASE("contact rows: the lag never grows beyond the tip's radius and how deep it is") {
+    constexpr double kDeep_m = 1e-3, kMost_m = kTipRadius_m + kDeep_m;
     const LocalLaw law{.tangential_mpn = 50e-3, .floor_mpn = 1e-3};
     Memory memory;
     for (int ms = 0; ms < 50; ++ms) {
         const ContactProblem p =
-            one_tool(law, 1.0, depth_tip(1e-3) + glm::dvec3{ms * 1e-4, 0, 0}, 0.0);
+            one_tool(law, 1.0, depth_tip(kDeep_m) + glm::dvec3{ms * 1e-4, 0, 0}, 0.0);
         const ContactSolution s = haptics::solve_contact(p, memory);
-        CHECK(glm::length(memory[0].lag_m) <= kTipRadius_m * (1 + 1e-12));
+        CHECK(glm::length(memory[0].lag_m) <= kMost_m * (1 + 1e-12));
         if (ms == 49)
-            CHECK(s.slip_m[0].x == doctest::Approx(4.9e-3 - kTipRadius_m).scale(0.0));
+            CHECK(s.slip_m[0].x == doctest::Approx(4.9e-3 - kMost_m).scale(0.0));
     }
 }
 
