@@ -133,7 +133,11 @@ void add_study_organ(CLI::App& study) {
     c->add_option("--edge", a->beside.press.edge_share,
                   "Longest edge under its tip, of the radius");
     c->add_option("--core", a->beside.press.core_share,
-                  "How far around it edges are that short, of the radius");
+                  "How far around it and the line below it edges are that short, of the radius");
+    c->add_option("--down", a->beside.press.down_share,
+                  "How long that line is, of the greatest depth");
+    c->add_flag("--onto-skin,!--facets", a->beside.press.onto_skin,
+                "Lay its facets around the place on the organ's skin, or leave them flat");
     c->add_option("--step", a->beside.press.step_share, "Its greatest step, of the radius");
     c->add_option("--tier", a->tier,
                   "Of the trainer's tissue beside it: linear-compliance, corotated, quadratic");

@@ -69,11 +69,13 @@ void add_rows(const OrganReferenceOptions& o, int place, OrganReference& study) 
 std::string record_key(const OrganReferenceOptions& o, const tissue::BakedOrgan& organ) {
     std::string key = fmt::format(
         "# organ reference: {} ({} nodes, {} tets), E {} Pa, nu {}, hold {} {} {} {} {}, seed {}, "
-        "free skin, radius {} m, friction {}, edge {} in {}, step {}, depths",
+        "free skin, radius {} m, friction {}, edge {} in {}{}{}, step {}, depths",
         organ.name, organ.mesh.rest_m.size(), organ.mesh.tets.size(), o.material.young_pa,
         o.material.poisson, o.hold.toward.x, o.hold.toward.y, o.hold.toward.z, o.hold.share,
         o.hold.length_m, o.seed, o.press.radius_m, o.press.friction, o.press.edge_share,
-        o.press.core_share, o.press.step_share);
+        o.press.core_share,
+        o.press.down_share > 0.0 ? fmt::format(" to {} of the depth", o.press.down_share) : "",
+        o.press.onto_skin ? " on the skin" : "", o.press.step_share);
     for (const double d : o.press.depth_m)
         key += fmt::format(" {}", d);
     return key;

@@ -186,14 +186,16 @@ std::string page(const OrganReferenceOptions& o, const OrganReference& study) {
     const ReferenceSummary s = summary_of(o, study);
     std::string out = fmt::format(
         "# What a tip feels on an organ, beside the reference\n\n{}.\nMachine: {}.\nReference: "
-        "ten-node tetrahedra of the same facets, longest edge {} of the tip's radius within {} of "
-        "it, "
+        "ten-node tetrahedra {}, longest edge {} of the tip's radius within {} of a line to {} of "
+        "the depth below it, "
         "neo-Hooke, Coulomb friction, steps of {} of the radius.\nGates: force within {} % above "
         "{} N and {} mN below, stiffness between neighbouring depths within {} %, direction "
         "within {} degrees.\n\n![force against depth](reference.svg)\n\n| place | reached mm | "
         "worst force mN | worst % | worst stiffness % | worst degrees | inside A1, A2, A3 of "
         "depths |\n|---|---|---|---|---|---|---|\n",
-        what(o, study), machine(), o.press.edge_share, o.press.core_share, o.press.step_share,
+        what(o, study), machine(),
+        o.press.onto_skin ? "laid on the organ's skin around the place" : "of flat facets",
+        o.press.edge_share, o.press.core_share, o.press.down_share, o.press.step_share,
         kGates.force_percent, kGates.full_force_n, 1e3 * kGates.small_force_n,
         kGates.stiffness_percent, kGates.direction_deg);
     const std::size_t depths = o.press.depth_m.size();

@@ -2,6 +2,7 @@
 
 #include "tissue/mesh/refine.h"
 #include "tissue/reference/indenter.h"
+#include "tissue/reference/onto_skin.h"
 #include "tissue/response/boundary_tree.h"
 
 #include <algorithm>
@@ -18,6 +19,9 @@ using glm::dvec3;
 constexpr double kTolerance = 1e-5; // of Newton's relative residual: forces to 1e-4
 constexpr int kProducts = 30;       // cost about as much as a factor of 100 000 unknowns
 constexpr double kGrowth = 1.0;     // of edges per distance
+constexpr double kOff = 0.03;       // tip radii that a facet may stay off the skin
+constexpr int kCoarsest = 16;       // times the edges: the first of refinements laid on the skin
+constexpr double kWhole = 3.0;      // tip radii within which facets lie on the skin: all it touches
 
 std::vector<std::uint8_t> held_flags(const tissue::QuadraticMesh& mesh,
                                      const tissue::RefinedMesh& fine) {
@@ -31,6 +35,34 @@ std::vector<std::uint8_t> held_flags(const tissue::QuadraticMesh& mesh,
         }
     }
     return held;
+}
+
+// Coarser refinements first, each laid on the skin, so that no facet moves by much of its edge. The
+// place goes there too.
+tissue::RefinedMesh refined_at(const tissue::BakedOrgan& organ, const ReferencePressOptions& o,
+                               const dvec3& near_m, const dvec3& into, dvec3& place_m) {
+    tissue::RefineSize size{.edge_m = o.edge_share * o.radius_m,
+                            .core_m = o.core_share * o.radius_m,
+                            .growth = kGrowth,
+                            .down_m = o.down_share * o.depth_m.back() * into};
+    if (!o.onto_skin)
+        return tissue::refined(organ.mesh, organ.anchored, organ.bed, place_m, size);
+    const tissue::SmoothSkin skin = tissue::make_smooth_skin(organ.surface);
+    place_m = tissue::on_smooth_skin(skin, near_m);
+    tissue::RefinedMesh fine{organ.mesh, organ.anchored, organ.bed};
+    size.edge_m *= kCoarsest;
+    double off_m = 0.0;
+    for (int coarser = kCoarsest; coarser >= 1; coarser /= 2, size.edge_m /= 2) {
+        fine = tissue::refined(fine.mesh, fine.anchored, fine.bed, place_m, size);
+        off_m = tissue::lay_onto_skin(skin, place_m, kWhole * o.radius_m, fine.mesh);
+    }
+    if (off_m > kOff * o.radius_m) {
+        throw std::invalid_argument(fmt::format(
+            "reference press: a facet of '{}' stays {:.2f} mm off its skin, where {:.2f} are "
+            "allowed: want the organ in smaller tetrahedra",
+            organ.name, 1e3 * off_m, 1e3 * kOff * o.radius_m));
+    }
+    return fine;
 }
 
 std::string why_stopped(const tissue::PressReport& report) {
@@ -54,6 +86,8 @@ ReferencePress press_reference(const tissue::BakedOrgan& organ, const tissue::Ma
     if (organ.rigid || (organ.bed.empty() && !fixed))
         throw std::invalid_argument("reference press: nothing holds the organ '" + organ.name +
                                     "'");
+    if (o.depth_m.empty())
+        throw std::invalid_argument("reference press: want at least one depth");
     const std::clock_t began = std::clock();
     const tissue::BoundaryTree facets = tissue::make_boundary_tree(organ.mesh);
     tissue::Press press{.place_m =
@@ -66,11 +100,7 @@ ReferencePress press_reference(const tissue::BakedOrgan& organ, const tissue::Ma
     press.newton = {
         .tolerance = kTolerance, .max_iterations = 20, .max_halvings = 0, .products = kProducts};
     press.step_halvings = 2;
-    const tissue::RefinedMesh fine =
-        tissue::refined(organ.mesh, organ.anchored, organ.bed, press.place_m,
-                        {.edge_m = o.edge_share * o.radius_m,
-                         .core_m = o.core_share * o.radius_m,
-                         .growth = kGrowth});
+    const tissue::RefinedMesh fine = refined_at(organ, o, place_m, into, press.place_m);
     const tissue::QuadraticMesh mesh = tissue::quadratic_mesh(fine.mesh);
     press.place_m += tissue::touch_depth_m(mesh, press) * into;
 

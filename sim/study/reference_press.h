@@ -1,13 +1,15 @@
 // sim/study/reference_press.h
 // One press of a tip into an organ by the reference solver: quadratic tetrahedra refined around the
-// place, neo-Hooke, Coulomb friction, the organ's own bed. Called by the organ study; slow.
-// With edges of 0.8 tip radii within 0.8 of the place it is stiffer than half_space_press.h (stuck,
-// nu 0.45, a block of 40 radii) by 1 % to 2 radii, 3 % at 4, 6 % at 5, 9 % at 6 and 12 % at 6.7;
-// with edges of 0.55 by 0, 1, 2, 4 and 5 %. A tip that sticks draws skin in from farther out: with
-// edges of 0.5 within 1.5 radii the liver's forces at 6.7 radii are 4 to 5 % less than with the
-// former. So it is the deepest stiffness that is least certain: on that block 17 % too great at 6.7
-// radii, of which the block's size is 2; 9 % with edges of 0.4 within 2 radii
-// (tests/tissue/finite_sphere_test.cpp).
+// place and laid there on the skin that the trainer's tools touch, for a first touch of
+// millinewtons feels a facet and not the organ (onto_skin.h); neo-Hooke, Coulomb friction, the
+// organ's own bed. Called by the organ study; slow.
+//
+// What its mesh costs in accuracy, on a block of 40 tip radii, stuck, nu 0.45, beside
+// half_space_press.h (tests/tissue/finite_sphere_test.cpp): + 1 % force at 1 radius, 2 % at 3, 5 %
+// at 6.7, where the stiffness is 9 % too great, 2 of which are the block's size. What coarser tets
+// leave out there is under the tip rather than around it: edges of 0.5 radii within 1.5 of the
+// place, with as many nodes, are 6 and 17 % off; 0.4 within 0.6 of the line, with a fifth more, 4
+// and 5 %.
 #pragma once
 
 #include "tissue/mesh/baked_organ.h"
@@ -22,8 +24,10 @@ struct ReferencePressOptions {
     double friction = 0.1;       // Coulomb coefficient
     std::vector<double> depth_m; // ascending
     double edge_share = 0.5;     // longest edge under the tip, of the radius
-    double core_share = 1.5;     // how far around the place edges are that short, of the radius
+    double core_share = 0.7;     // how far around the line below the place, of the radius
+    double down_share = 0.6;     // length of that line, of the greatest depth
     double step_share = 0.5;     // greatest step of depth, of the radius
+    bool onto_skin = true;       // lay the facets around the place on the organ's skin
 };
 
 struct ReferencePress {
@@ -36,9 +40,10 @@ struct ReferencePress {
     std::string stopped{}; // where and why, if not at the last depth
 };
 
-/// Along `into` (unit) through the point of the body's facets nearest to `place_m`; depth 0 is
-/// where the tip first touches. `progress` (may be empty) gets depths with an equilibrium, and the
-/// force. Throws std::invalid_argument for an organ that nothing holds and for bad options.
+/// Along `into` (unit) through the point of the skin, or else of the facets, nearest to `place_m`;
+/// depth 0 is where the tip first touches. `progress` (may be empty) gets depths with an
+/// equilibrium, and the force. Throws std::invalid_argument for an organ that nothing holds, one
+/// whose facets cannot be laid on its skin, and for bad options.
 ReferencePress
 press_reference(const tissue::BakedOrgan& organ, const tissue::Material& material,
                 const glm::dvec3& place_m, const glm::dvec3& into,

@@ -178,6 +178,7 @@ TEST_CASE("openhelp: tips press liver, stomach, spleen and kidney as the referen
         REQUIRE(places > 0);
         const auto study =
             json_of(fmt::format("study organ {} --model {} --reference --friction inf --points {} "
+                                "--edge 0.5 --core 1.5 --down 0 --facets "
                                 "--hold-toward 0 0 -1 --record '{}/presses' --out '{}/out'",
                                 pressed, usual, places, folder.string(), folder.string()));
         REQUIRE(places_in(folder / "presses") == places); // nothing had to be pressed anew

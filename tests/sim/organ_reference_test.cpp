@@ -24,6 +24,7 @@ sim::OrganReferenceOptions block() {
     o.press.radius_m = 2.5e-3;
     o.press.edge_share = 1.0;
     o.press.core_share = 0.8;
+    o.press.down_share = 0.0;
     o.press.depth_m = {1e-3, 2e-3};
     return o;
 }
@@ -168,12 +169,17 @@ TEST_CASE("organ reference: deep and stuck, on a block of 256 nodes, the law is 
 
 TEST_CASE("organ reference: a 3 mm tip to 10 mm on the liver is inside A1, A2 and A3") {
     // the reference's presses take minutes each; made anew into another record by
-    //   trocar study organ liver --reference --friction inf --out DIR
+    //   trocar study organ liver --reference --friction inf --edge 0.5 --core 1.5 --down 0
+    //     --facets --out DIR
     sim::OrganReferenceOptions o;
     o.organ = "liver";
     o.material.young_pa = 5.4e3;
     o.places = kLiverPlaces;
     o.press.friction = std::numeric_limits<double>::infinity();
+    o.press.edge_share = 0.5;
+    o.press.core_share = 1.5;
+    o.press.down_share = 0.0;
+    o.press.onto_skin = false;
     for (int i = 1; i <= 20; ++i)
         o.press.depth_m.push_back(0.5e-3 * i);
     o.record = fs::path(TROCAR_SOURCE) / "tests/data/presses/liver.presses";

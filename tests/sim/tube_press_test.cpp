@@ -98,7 +98,9 @@ TEST_CASE("tube: a tip pressed into a rod feels what it feels on the full cylind
                                   .friction = infinite,
                                   .depth_m = depth_m,
                                   .edge_share = 0.8,
-                                  .core_share = 1.0});
+                                  .core_share = 1.0,
+                                  .down_share = 0.0,
+                                  .onto_skin = false});
         sim::TrainerTip tip(std::make_shared<tissue::BakedOrgan>(rod(radius_m, material)), material,
                             tip_m, infinite, tissue::Tier::corotated);
         const auto ours = tip.press(place_m, -out, depth_m);

@@ -102,9 +102,10 @@ TEST_CASE("finite sphere: ten-node tetrahedra feel the table's force within 4 %"
               doctest::Approx(tissue::finite_sphere_force(p.depth_m, nu)).scale(0.0).epsilon(0.04));
 }
 
-TEST_CASE("finite sphere: how stiff ten-node tetrahedra are at seven radii, and finer ones less" *
+TEST_CASE("finite sphere: how stiff ten-node tetrahedra are at seven radii, and deep ones less" *
           doctest::test_suite("slow")) {
-    // what presses of organs to 10 mm are measured by is itself no better than this
+    // what presses of organs to 10 mm are measured by is itself no better than the latter; 2 % of
+    // the stiffness is the block's size
     struct Mesh {
         tissue::RefineSize size;
         double force, stiffness; // most above the table's
@@ -112,7 +113,8 @@ TEST_CASE("finite sphere: how stiff ten-node tetrahedra are at seven radii, and 
     const double nu = 0.45, table = tissue::finite_sphere_force(20.0 / 3.0, nu),
                  slope = (table - tissue::finite_sphere_force(19.0 / 3.0, nu)) / (1.0 / 3.0);
     double last_force = 1.0, last_stiffness = 1.0;
-    for (const Mesh& m : {Mesh{{0.5, 1.5, 1.0}, 0.065, 0.18}, {{0.4, 2.0, 0.6}, 0.04, 0.10}}) {
+    for (const Mesh& m :
+         {Mesh{{0.5, 1.5, 1.0}, 0.065, 0.18}, {{0.5, 0.7, 1.0, {0.0, 0.0, -4.0}}, 0.052, 0.09}}) {
         const auto report = press_block(nu, m.size, {3.0, 19.0 / 3.0, 20.0 / 3.0}, 1.0 / 3.0);
         REQUIRE(report.point.size() == 3);
         const double at = 4 * report.point[2].force_n.z, before = 4 * report.point[1].force_n.z;
@@ -122,8 +124,8 @@ TEST_CASE("finite sphere: how stiff ten-node tetrahedra are at seven radii, and 
         CHECK(force > 0.0);
         CHECK(force < m.force);
         CHECK(stiffness < m.stiffness);
-        CHECK(force < 0.8 * last_force);
-        CHECK(stiffness < 0.8 * last_stiffness);
+        CHECK(force < 0.85 * last_force);
+        CHECK(stiffness < 0.6 * last_stiffness);
         last_force = force, last_stiffness = stiffness;
     }
 }

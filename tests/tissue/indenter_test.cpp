@@ -157,12 +157,51 @@ TEST_CASE("indenter: old factors under conjugate gradients lead to the same equi
         p.newton.products = products;
         const auto old = q.press(p);
         REQUIRE(old.point.size() == 3);
-        CHECK((products == 1 ? old.factors == old.iterations : 2 * old.factors < old.iterations));
+        CAPTURE(old.factors);
+        CAPTURE(old.iterations);
+        // one product is rarely enough
+        CHECK((products == 1 ? 4 * old.factors > 3 * old.iterations
+                             : 2 * old.factors < old.iterations));
         CHECK(old.iterations < 1.2 * own.iterations);
         for (std::size_t i = 0; i < 3; ++i)
             CHECK(glm::length(old.point[i].force_n - own.point[i].force_n) <
                   1e-5 * glm::length(own.point[i].force_n));
     }
+}
+
+TEST_CASE("indenter: a tip that sticks does so from its first touch, however far its depths") {
+    // a strip, soft upwards and stiff sideways, pressed askew near its free end: a first step that
+    // slides would find no force sideways
+    const dvec3 size_m{40e-3, 8e-3, 3e-3}, place_m{36e-3, 4e-3, 3e-3};
+    const auto mesh = tissue::quadratic_mesh(
+        tissue::refined(tissue::box_mesh(size_m, {10, 2, 1}), {}, {}, place_m,
+                        {.edge_m = 0.7 * kRadius_m, .core_m = 0.7 * kRadius_m, .growth = 2.0})
+            .mesh);
+    const auto held =
+        flags(mesh, [](const dvec3& x) { return x.x < 1e-9 ? int{tissue::kHeld} : 0; });
+    const auto model =
+        tissue::make_reference(mesh, bodies::elastic(6e3, 0.45), tissue::Law::neo_hooke, held);
+    const auto pressed = [&](double step_share) {
+        auto system = tissue::make_system(model);
+        auto state = tissue::rest_state(model);
+        tissue::Press p{.place_m = place_m,
+                        .into = {0.0, -std::sin(0.5), -std::cos(0.5)},
+                        .radius_m = kRadius_m,
+                        .depth_m = {0.4 * kRadius_m},
+                        .friction = std::numeric_limits<double>::infinity(),
+                        .step_m = step_share * kRadius_m};
+        p.place_m += tissue::touch_depth_m(mesh, p) * p.into;
+        const auto report = tissue::press(model, p, system, state);
+        REQUIRE(report.point.size() == 1);
+        return report.point[0].force_n;
+    };
+    const dvec3 coarse = pressed(0.4), fine = pressed(0.04);
+    CAPTURE(coarse.y);
+    CAPTURE(coarse.z);
+    CAPTURE(fine.y);
+    CAPTURE(fine.z);
+    CHECK(std::abs(fine.y) > 0.7 * std::abs(fine.z));
+    CHECK(glm::length(coarse - fine) < 0.1 * glm::length(fine)); // in one step 0.9 of it
 }
 
 TEST_CASE("indenter: contact's slope and tangent are those of its energy") {

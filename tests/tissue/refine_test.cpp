@@ -82,6 +82,28 @@ TEST_CASE("refine: tets are small near the place, and only there") {
     CHECK(r.mesh.tets.size() < 50000);
 }
 
+TEST_CASE("refine: along a line down from the place, tets are small as they are at the place") {
+    const dvec3 down{0.0, 0.0, -20e-3};
+    const auto r =
+        tissue::refined(coarse(), {}, {}, kPlace, {.edge_m = 1e-3, .core_m = 1e-3, .down_m = down});
+    int deep = 0;
+    for (const auto& t : r.mesh.tets) {
+        double distance = 1.0;
+        for (const auto node : t) {
+            const dvec3 x = r.mesh.rest_m[node] - kPlace;
+            const double along = std::clamp(x.z, down.z, 0.0);
+            distance = std::min(distance, glm::length(x - dvec3{0.0, 0.0, along}));
+            deep += x.z < -15e-3 && distance < 1e-3;
+        }
+        CHECK(longest_edge_m(r.mesh, t) <= 1e-3 + 0.5 * std::max(0.0, distance - 1e-3) + 1e-12);
+    }
+    CHECK(deep > 50);
+    // negative control: with no line the deep ones stay large
+    const auto without =
+        tissue::refined(coarse(), {}, {}, kPlace, {.edge_m = 1e-3, .core_m = 1e-3});
+    CHECK(without.mesh.tets.size() < r.mesh.tets.size() / 2);
+}
+
 TEST_CASE("refine: halving sizes four times does not flatten tets further than the first time") {
     const auto mesh = coarse();
     const double start = tissue::least_shape_quality(mesh);

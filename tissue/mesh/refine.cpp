@@ -123,14 +123,20 @@ void cut_edge(Cutter& c, const Edge& edge) {
 }
 
 bool too_large(const TetMesh& mesh, const Tet& t, const dvec3& place_m, const RefineSize& size) {
-    double distance_m = glm::distance(mesh.rest_m[t[0]], place_m);
-    dvec3 centre{0.0};
-    for (const std::uint32_t node : t) {
-        distance_m = std::min(distance_m, glm::distance(mesh.rest_m[node], place_m));
-        centre += 0.25 * mesh.rest_m[node];
-    }
+    const double length2 = glm::dot(size.down_m, size.down_m);
+    const auto distance_to = [&](const dvec3& x) {
+        const dvec3 way = x - place_m;
+        const double share =
+            length2 > 0.0 ? std::clamp(glm::dot(way, size.down_m) / length2, 0.0, 1.0) : 0.0;
+        return glm::length(way - share * size.down_m);
+    };
     // a large tet may hold the place far from its corners
-    distance_m = std::min(distance_m, glm::distance(centre, place_m));
+    dvec3 centre{0.0};
+    for (const std::uint32_t node : t)
+        centre += 0.25 * mesh.rest_m[node];
+    double distance_m = distance_to(centre);
+    for (const std::uint32_t node : t)
+        distance_m = std::min(distance_m, distance_to(mesh.rest_m[node]));
     const double edge_m = std::sqrt(std::get<0>(rank(mesh, longest_edge(mesh, t))));
     return edge_m > size.edge_m + size.growth * std::max(0.0, distance_m - size.core_m);
 }

@@ -10,11 +10,13 @@
 
 namespace tissue {
 
-/// Longest edge allowed for a tet whose nearest corner is `distance` from the place:
+/// Longest edge allowed for a tet whose nearest corner is `distance` from the place, or from the
+/// line between it and `place_m + down_m`:
 ///   edge_m + growth max(0, distance - core_m)
 struct RefineSize {
     double edge_m = 0.0, core_m = 0.0;
     double growth = 0.5;
+    glm::dvec3 down_m{0.0};
 };
 
 struct RefinedMesh {

@@ -18,6 +18,11 @@ namespace {
 
 using glm::dvec3;
 
+// Friction holds what the step before has touched. A first touch that is one long step slides,
+// where an organ bends away under it, and its force leans: up to 40 degrees at 0.3 radii.
+constexpr double kFirstStep = 1.0 / 16.0; // of the greatest
+constexpr double kStepGrowth = 0.5;       // a step per depth so far
+
 double reach_m(const Press& p) {
     return 3.0 * (p.radius_m + p.depth_m.back());
 }
@@ -85,7 +90,8 @@ PressReport press(const ReferenceModel& model, const Press& p, ReferenceSystem& 
     if (contact.points.empty())
         throw std::invalid_argument("press: no face of the body is near the place");
     const double greatest_m = p.step_m > 0.0 ? p.step_m : 0.25 * p.radius_m;
-    const double least_m = std::ldexp(greatest_m, -p.step_halvings);
+    const double first_m = p.friction > 0.0 ? kFirstStep * greatest_m : greatest_m;
+    const double least_m = std::min(std::ldexp(greatest_m, -p.step_halvings), 0.5 * first_m);
 
     PressReport report;
     std::vector<dvec3> now = displacements_m(model, state.position_m), before = now;
@@ -93,6 +99,8 @@ PressReport press(const ReferenceModel& model, const Press& p, ReferenceSystem& 
     const Potential potential{model.weight_n, {}, &contact};
     while (report.point.size() < p.depth_m.size() && step_m >= 0.999 * least_m) {
         const double goal_m = p.depth_m[report.point.size()];
+        if (p.friction > 0.0)
+            step_m = std::min(step_m, std::max(first_m, kStepGrowth * report.reached_m));
         const bool arrives = report.reached_m + 1.001 * step_m >= goal_m;
         const double depth_m = arrives ? goal_m : report.reached_m + step_m;
         const double taken_m = depth_m - report.reached_m;

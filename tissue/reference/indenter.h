@@ -2,7 +2,7 @@
 // What it takes to press a rigid round tip into a reference body: statics with contact, one depth
 // after the other. Called by studies and tests; slow; any thread, one per system.
 // The tip slides on the skin under Coulomb friction, freely (0) or not at all (infinite); the limit
-// is that of the step before, so friction is of first order in the step.
+// is that of the step before, so friction is of first order in the step, and first steps are short.
 #pragma once
 
 #include "tissue/reference/tip_contact.h"
@@ -17,9 +17,10 @@ struct Press {
     double radius_m = 1.5e-3;        // of the tip
     std::vector<double> depth_m;     // ascending, > 0
     double friction = 0.0;           // Coulomb coefficient, may be infinite
-    double step_m = 0.0;             // greatest step; 0: a quarter of the radius
-    double penalty = 100.0;          // k radius / E
-    int step_halvings = 3;           // before giving up
+    double step_m = 0.0; // greatest step; 0: a quarter of the radius. With friction half the depth
+                         // so far, from a sixteenth of the greatest on
+    double penalty = 100.0; // k radius / E
+    int step_halvings = 3;  // before giving up
     NewtonOptions newton{.tolerance = 1e-7, .max_iterations = 25, .max_halvings = 1};
 };
 
