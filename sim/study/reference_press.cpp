@@ -19,7 +19,7 @@ using glm::dvec3;
 constexpr double kTolerance = 1e-5; // of Newton's relative residual: forces to 1e-4
 constexpr int kProducts = 30;       // cost about as much as a factor of 100 000 unknowns
 constexpr double kGrowth = 1.0;     // of edges per distance
-constexpr double kOff = 0.03;       // tip radii that a facet may stay off the skin
+constexpr double kOff = 0.1;        // tip radii that a facet may stay off the skin
 constexpr int kCoarsest = 16;       // times the edges: the first of refinements laid on the skin
 constexpr double kWhole = 3.0;      // tip radii within which facets lie on the skin: all it touches
 

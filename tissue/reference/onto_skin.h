@@ -29,7 +29,8 @@ glm::dvec3 on_smooth_skin(const SmoothSkin& skin, const glm::dvec3& from_m);
 /// (a discrete harmonic map), so tets keep their shapes where they can. The farther facets are
 /// from the skin, the farther out it reaches. No tet keeps less than a fifth of its volume: where
 /// one would, facets stay between. Returns how far off the skin a node within `whole_m` still is:
-/// nothing but rounding if facets are moved by little of their edges, so lay, refine and lay again.
+/// next to nothing if facets are moved by little of their edges, so lay, refine and lay again; some
+/// hundredths of an edge of the skin at a crease, where the smooth surface is not its own image.
 /// Throws as check_mesh().
 double lay_onto_skin(const SmoothSkin& skin, const glm::dvec3& place_m, double whole_m,
                      TetMesh& mesh);
