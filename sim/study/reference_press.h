@@ -8,8 +8,8 @@
 // half_space_press.h (tests/tissue/finite_sphere_test.cpp): + 1 % force at 1 radius, 2 % at 3, 5 %
 // at 6.7, where the stiffness is 9 % too great, 2 of which are the block's size. What coarser tets
 // leave out there is under the tip rather than around it: edges of 0.5 radii within 1.5 of the
-// place, with as many nodes, are 6 and 17 % off; 0.4 within 0.6 of the line, with a fifth more, 4
-// and 5 %.
+// place, with a seventh fewer nodes, are 6 and 17 % off; 0.4 within 0.6 of the line, with a fifth
+// more, 4 and 5 %.
 #pragma once
 
 #include "tissue/mesh/baked_organ.h"

@@ -73,6 +73,14 @@ TEST_CASE("organ reference: shallow, on a block of 256 nodes, the law is inside 
     CHECK(study.reference[0].penetration_m < 0.02 * o.press.radius_m);
 }
 
+TEST_CASE("organ reference: a press to no depth is refused") {
+    auto o = block();
+    o.press.depth_m.clear();
+    const auto organ = sim::load_organ(o.organ);
+    CHECK_THROWS_WITH(sim::press_reference(*organ, o.material, {}, {0, 0, -1}, o.press),
+                      doctest::Contains("at least one depth"));
+}
+
 TEST_CASE("organ reference: a wrong modulus in the law alone would be seen") {
     // negative control: the same places, the law of tissue 1.5 times as stiff
     auto o = block();
